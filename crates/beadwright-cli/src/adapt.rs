@@ -90,7 +90,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let plan = source.plan().with_context(context)?;
     let profile = source.profile(&arguments.wanted)?;
     anyhow::ensure!(
-        profile.layers.chart.is_level(),
+        profile.layers.are_level(),
         "{}: scans are compared with level layers only, and these are not level (layers.chart)",
         arguments.plan.display()
     );

@@ -43,8 +43,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     file::write(&path, &bytes)?;
     let mut out = say::done(file::is_standard(&path));
     writeln!(out, "{}: {}", path.display(), example.about)?;
-    if let Some(chart) = example.chart.filter(|_| !wants_curves) {
-        writeln!(out, "Plan it with --chart {chart}.")?;
+    let Some(bodies) = example.bodies().filter(|_| !wants_curves) else { return Ok(()) };
+    if file::is_standard(&path) {
+        let chart = example.chart.map(|chart| format!("Plan it with --chart {chart}.\n"));
+        return Ok(write!(out, "{}", chart.unwrap_or_default())?);
     }
+    let beside = path.with_extension("bodies.toml");
+    file::write(&beside, bodies.as_bytes())?;
+    writeln!(out, "{}: how its layers lie. Plan it with --bodies {}.", beside.display(), beside.display())?;
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
 use crate::several::{Build, Order, Several};
-use crate::{model, preform, profile, progress, remedy, say};
+use crate::{file, model, preform, profile, progress, remedy, say};
 use anyhow::Context;
 use beadwright::Finding;
 use beadwright::chart::{Chart, ChartError};
@@ -18,7 +18,7 @@ use beadwright::model::{Mesh, Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::{self, Expected, Header, MAX_LAYERS, PlanError, Sink, Summary};
 use beadwright::planar::Bounds;
-use beadwright::profile::Profile;
+use beadwright::profile::{Body, Profile};
 use beadwright::read_back;
 use beadwright::report::{self, rows};
 use beadwright::task::Task;
@@ -54,6 +54,9 @@ pub(crate) struct Arguments {
     /// part as it stands on the table.
     #[arg(long, value_name = "KIND:KEY=VALUE,...", value_parser = parse_chart)]
     chart: Option<Chart>,
+    /// Weld the part as several bodies, one after another, each with layers of its own kind: a file with a table [[body]] for each.
+    #[arg(long, value_name = "FILE", conflicts_with = "chart")]
+    bodies: Option<PathBuf>,
     /// Make the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
@@ -163,14 +166,15 @@ impl Arguments {
     /// What is built.
     pub(crate) fn build(&self, profile: &Profile, task: &Task) -> anyhow::Result<Build> {
         anyhow::ensure!(
-            !profile.layers.chart.has_wedges() || self.several.with.is_empty(),
-            "--with: a guide (layers.chart) leads through one part"
+            !profile.layers.charts().any(Chart::has_wedges) && profile.layers.bodies.is_empty()
+                || self.several.with.is_empty(),
+            "--with: a guide (layers.chart) and bodies (layers.bodies) belong to one part"
         );
         self.several.stand(&self.model, |model| {
             let use_as = if self.preform { model::Use::Preform } else { model::Use::AsDrawn };
             let part = model.part_placed(profile, use_as, self.height, task)?;
             let part = match self.from_z {
-                Some(_) if !profile.layers.chart.is_level() => {
+                Some(_) if !profile.layers.are_level() => {
                     anyhow::bail!("--from-z cuts level layers: leave layers.chart out, or cut the model")
                 }
                 Some(z) => part.above(z).with_context(|| format!("--from-z {z}"))?,
@@ -183,6 +187,10 @@ impl Arguments {
     /// The profile of that name with what was asked for.
     pub(crate) fn profile(&self, name: &str) -> anyhow::Result<Profile> {
         let mut profile = profile::load(name, &self.settings())?;
+        if let Some(path) = &self.bodies {
+            let text = file::text(path)?;
+            profile.layers.bodies = Body::read(&text).with_context(|| path.display().to_string())?;
+        }
         if !self.post.is_empty() {
             profile.posts.clone_from(&self.post);
         }

@@ -1,5 +1,6 @@
 //! The totals of a plan: passes, lengths, times, wire, heat.
 
+use crate::chart::Chart;
 use crate::bead::wire_area;
 use crate::layer::Layer;
 use crate::process::Cost;
@@ -93,7 +94,7 @@ impl Metrics {
             // It flows before and after every pass.
             gas_idle: process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow,
             cost: profile.cost.clone(),
-            layers: profile.layers.chart.has_wedges().then(|| profile.layers.clone()),
+            layers: profile.layers.charts().any(Chart::has_wedges).then(|| profile.layers.clone()),
         };
         Self {
             layers: 0,
@@ -145,11 +146,10 @@ impl Metrics {
         self.slice_area_mm2 += layer.slice_area;
         self.planned_area_mm2 += layer.planned_area;
         self.part_volume_mm3 += self.volume(layer);
-        if let Some(pause) =
-            (!layer.passes.is_empty()).then(|| self.torch.begin_layer(layer.index, layer.lit, layer.middle())).flatten()
-        {
-            self.pause(pause);
-        }
+        let begun = self.torch.begin_layer(layer, 0);
+        self.travel_length_mm += begun.length();
+        self.dwell_time_s += begun.waiting();
+        self.total_time_s += begun.moving() + begun.waiting();
         for pass in &layer.passes {
             let Some(start) = pass.start() else { continue };
             if let Some(pause) = self.torch.wait(pass.wait) {

@@ -8,7 +8,7 @@
 //! Version 1, which is still read, holds only the name of the profile and its bead, and calls the pace `speed`.
 
 use crate::bead::{Bead, Section};
-use crate::chart::{Chart, Sheet};
+use crate::chart::Sheet;
 use crate::deposit::{DepositSettings, Nominal};
 use crate::heat::LONGEST_WAIT;
 use crate::layer::{Extent, Layer, Lit};
@@ -16,8 +16,8 @@ use crate::model::MAX_REACH_MM;
 use crate::number::{fixed, push_fixed};
 use crate::pass::{Along, Pass, PassKind};
 use crate::plan::{self, Header, charted};
-use crate::profile::{Profile, ProfileError};
-use crate::slice::{Half, middle};
+use crate::profile::{LayersSection, Profile, ProfileError};
+use crate::slice::Half;
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use serde::Deserialize;
@@ -38,7 +38,7 @@ pub fn head(header: &Header, profile: &Profile) -> String {
     let Header { part, strategy, extent, .. } = header;
     let bounds = [extent.low, extent.high];
     let fields = json!({ "part": part, "strategy": strategy, "profile": profile, "bounds": bounds }).to_string();
-    let version = if profile.layers.chart.is_level() { VERSION } else { NEWEST };
+    let version = if profile.layers.are_level() { VERSION } else { NEWEST };
     format!("{{\"version\":{version},\"units\":\"mm\",{},\"layers\":[", &fields[1..fields.len() - 1])
 }
 
@@ -51,6 +51,9 @@ pub fn layer(layer: &Layer, sheet: Option<&Sheet<'_>>) -> String {
     push_fixed(&mut text, layer.z, DECIMALS);
     text.push_str(",\"height\":");
     push_fixed(&mut text, layer.height, DECIMALS);
+    if layer.body > 0 {
+        text.push_str(&format!(",\"body\":{}", layer.body));
+    }
     if layer.lit.after {
         text.push_str(",\"goes_on\":true");
     }
@@ -239,12 +242,12 @@ pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
         }
         FileProfile::Name(name) => (name, None, file.bead.map(|b| b.settings(file.machining_allowance)).transpose()?),
     };
-    let chart = profile.as_ref().map(|profile| profile.layers.chart.clone()).unwrap_or_default();
+    let section = profile.as_ref().map(|profile| &profile.layers);
     let mut layers = file
         .layers
         .into_iter()
         .enumerate()
-        .map(|layer| FileLayer::layer(layer, &chart))
+        .map(|layer| FileLayer::layer(layer, section))
         .collect::<Result<Vec<_>, _>>()?;
     Lit::join(&mut layers).map_err(|index| PlanFileError::Layer { layer: index + 1, reason: NOT_ONE_TURN })?;
     if layers.is_empty() {
@@ -310,6 +313,8 @@ struct FileLayer {
     z: f64,
     height: f64,
     #[serde(default)]
+    body: usize,
+    #[serde(default)]
     half: Option<Half>,
     #[serde(default)]
     goes_on: bool,
@@ -365,8 +370,8 @@ fn possible(value: f64) -> bool {
 const MAX_MEASURE: f64 = 2000.0;
 
 impl FileLayer {
-    fn layer((number, layer): (usize, Self), chart: &Chart) -> Result<Layer, PlanFileError> {
-        let Self { index, z, height, half, goes_on, islands, passes } = layer;
+    fn layer((number, layer): (usize, Self), section: Option<&LayersSection>) -> Result<Layer, PlanFileError> {
+        let Self { index, z, height, body, half, goes_on, islands, passes } = layer;
         let wrong = |reason| Err(PlanFileError::Layer { layer: number + 1, reason });
         if index != number {
             return wrong("its index is not its place in the list, counted from 0");
@@ -378,14 +383,18 @@ impl FileLayer {
         let read = |(i, pass): (usize, FilePass)| {
             pass.pass().map_err(|reason| PlanFileError::Pass { layer: index + 1, pass: i + 1, reason })
         };
-        let mut passes = passes.into_iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
-        if !chart.is_level() {
-            let sheet = chart.sheet(middle(z, height, half));
-            passes = passes.into_iter().map(|pass| charted::on_layer(pass, &sheet, &islands)).collect();
-        }
+        let passes = passes.into_iter().enumerate().map(read).collect::<Result<Vec<_>, _>>()?;
         let slice_area = islands.iter().map(Polygon::area).sum();
         let lit = Lit { before: false, after: goes_on };
-        Ok(Layer { index, z, height, half, islands, passes, lit, slice_area, ..Layer::default() })
+        let mut layer = Layer { index, z, height, body, half, islands, passes, lit, slice_area, ..Layer::default() };
+        if body > 0 && section.is_none_or(|section| body >= section.bodies.len()) {
+            return wrong("its body is none of those in layers.bodies of the profile");
+        }
+        if let Some(sheet) = section.and_then(|section| section.sheet(&layer)) {
+            let on_layer = |pass| charted::on_layer(pass, &sheet, &layer.islands);
+            layer.passes = std::mem::take(&mut layer.passes).into_iter().map(on_layer).collect();
+        }
+        Ok(layer)
     }
 }
 

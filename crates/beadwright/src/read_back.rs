@@ -1,5 +1,6 @@
 //! Programs and plans read back as layers that can be judged: the same for the command, the studio and Python.
 
+use crate::chart::Chart;
 use crate::compare::Totals;
 use crate::deposit::{DepositSettings, MANY_POINTS};
 use crate::dialect::reading::{self, ArcCodes, Fault, FindModule, Metal, Options, ReadError};
@@ -147,7 +148,7 @@ const PLAN: &str = "plan";
 impl ReadBack {
     /// The layers as the deposit model judges them: those of a plan as its chart shows them ([`plan::even`]).
     pub fn judged(&self, profile: &Profile) -> Cow<'_, [Layer]> {
-        if self.language != PLAN || !profile.layers.chart.has_wedges() {
+        if self.language != PLAN || !profile.layers.charts().any(Chart::has_wedges) {
             return Cow::Borrowed(&self.layers);
         }
         Cow::Owned(self.layers.iter().map(|layer| plan::even(layer, profile).into_owned()).collect())

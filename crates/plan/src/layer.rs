@@ -56,6 +56,8 @@ impl Lit {
 pub struct Layer {
     /// Index from 0.
     pub index: usize,
+    /// Index of the body that it belongs to, from 0: a part may be welded as several, one after another.
+    pub body: usize,
     /// Top of the layer, mm.
     pub z: f64,
     /// Thickness, mm.

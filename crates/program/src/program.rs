@@ -26,7 +26,7 @@ use crate::number;
 use bead_plan::layer::Layer;
 use bead_plan::pass::{Pass, PassKind};
 use bead_plan::process::Follow;
-use bead_plan::weld::{Pause, Torch, WeldSettings, path};
+use bead_plan::weld::{Begun, Pause, Torch, WeldSettings, path};
 use glam::{DVec2, DVec3};
 use planar::arcs::{Fit, Piece};
 use spread::Spread;
@@ -266,7 +266,7 @@ impl Programmer {
         self.speed_tolerance = program.speed_tolerance;
         self.fit = (tolerance > 0.0).then_some(Fit {
             tolerance,
-            arcs: program.arcs && self.torch.sheet().is_none(),
+            arcs: program.arcs && self.torch.is_level(),
             grid: RESOLUTION_MM,
         });
         self
@@ -297,11 +297,9 @@ impl Programmer {
         self.pass_over(layer);
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
         self.feed = None;
-        let mut pause = (!layer.passes.is_empty())
-            .then(|| self.torch.begin_layer(layer.index, layer.lit, layer.middle()))
-            .flatten();
+        let mut begun = self.torch.begin_layer(layer, first);
         for (i, pass) in layer.passes.iter().enumerate().skip(first) {
-            self.pass(i + 1, pass, &mut pause, &mut instructions);
+            self.pass(i + 1, pass, &mut begun, &mut instructions);
         }
         if self.dry {
             let kept = |i: &Instruction| {
@@ -327,8 +325,8 @@ impl Programmer {
         }
     }
 
-    /// A pass, after the wait of its layer if one is still due.
-    fn pass(&mut self, number: usize, pass: &Pass, pause: &mut Option<Pause>, out: &mut Vec<Instruction>) {
+    /// A pass, after what comes before the first one of its layer if that is still due.
+    fn pass(&mut self, number: usize, pass: &Pass, begun: &mut Begun, out: &mut Vec<Instruction>) {
         let mut moves = distinct(path(pass, self.torch.ends()));
         level_paces(&mut moves, self.speed_tolerance);
         self.spread.into_iter().for_each(|s| spread::spread(&mut moves, s));
@@ -346,9 +344,12 @@ impl Programmer {
         let table = turned.map(|turned| turned.angle);
         let begins = self.torch.at().is_none();
         let lit = self.torch.lit();
-        let pauses = [pause.take(), self.torch.wait(pass.wait)];
+        let Begun { transfer, pause } = std::mem::take(begun);
+        let pauses = [pause, self.torch.wait(pass.wait)];
+        // From another body the torch comes straight from above.
+        let over = before.filter(|_| transfer.is_some()).map_or(start.z, |at| at.z);
         let mut legs = self.torch.approach(start).legs;
-        let above = start.with_z(legs.iter().map(|to| to.z).fold(start.z, f64::max));
+        let above = start.with_z(legs.iter().map(|to| to.z).fold(over, f64::max));
         let down = legs.pop();
         let mut legs = legs.into_iter();
         if !lit.before {
@@ -390,6 +391,21 @@ impl Programmer {
         if let Some(sheet) = self.torch.sheet().filter(|_| self.placed) {
             let of_chart = out.split_off(own);
             out.extend(placed::placed(of_chart, &sheet, before));
+        }
+        if let Some(transfer) = transfer.filter(|_| self.placed) {
+            // The pass has begun.
+            let first = own + 1;
+            let moves: Vec<Instruction> = placed::transferred(&transfer).collect();
+            let there = moves.iter().rev().find_map(Instruction::target);
+            let is_there = |i: &Instruction| match (i, there) {
+                (Instruction::Travel { to }, Some(there)) => to.distance(there) < MIN_MOVE_MM,
+                _ => false,
+            };
+            let known = out[first..].iter().position(is_there).map(|at| first + at);
+            if let Some(at) = known {
+                out.remove(at);
+            }
+            out.splice(first..first, moves);
         }
     }
 

@@ -132,11 +132,8 @@ impl LayerBeads {
             boxes: Vec::new(),
             seconds: 0.0,
         };
-        if let Some(pause) =
-            (!layer.passes.is_empty()).then(|| torch.begin_layer(layer.index, layer.lit, layer.middle())).flatten()
-        {
-            beads.seconds = pause.moving + pause.seconds;
-        }
+        let begun = torch.begin_layer(layer, 0);
+        beads.seconds = begun.moving() + begun.waiting();
         for (i, pass) in layer.passes.iter().enumerate() {
             beads.add(pass, layer.height, torch);
             if let (Some(span), Some(temperature)) = (beads.passes.last_mut(), layer.temperatures.get(i)) {

@@ -140,8 +140,16 @@ pub struct LayerFigures {
 pub struct Grown {
     /// After each layer, where that layer lies.
     pub layers: Vec<Growth>,
-    /// At the end, everywhere; `None` where nothing is laid.
-    pub built: Option<Growth>,
+    /// At the end of each body, everywhere; `None` where nothing is laid, or where layers do not lie over one another as they are
+    /// unrolled.
+    pub built: Vec<Option<Growth>>,
+}
+
+impl Grown {
+    /// At the end, of the body that ends farthest from its plan.
+    pub fn worst(&self) -> Option<Growth> {
+        self.built.iter().flatten().copied().min_by(|a, b| a.within.total_cmp(&b.within))
+    }
 }
 
 /// Judges a plan layer by layer, as it is welded with a profile, and passes each layer's index and judgement to `each`.
@@ -176,13 +184,33 @@ pub fn grown<L: Borrow<Layer>>(
     settings: DepositSettings,
     task: &Task,
 ) -> Result<Grown, Cancelled> {
-    let Some(bounds) = extent(layers).filter(|_| settings.over_one_another) else { return Ok(Grown::default()) };
+    let layers: Vec<&Layer> = layers.iter().map(L::borrow).collect();
+    let bodies = bodies(&layers).map(|body| body_grown(body, &profile.of_body(body[0].body), settings, task));
+    let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
+    let built: Vec<Option<Growth>> = bodies.iter().map(|(_, built)| *built).collect();
+    Ok(Grown { layers: bodies.into_iter().flat_map(|(layers, _)| layers).collect(), built })
+}
+
+/// The layers of each body.
+fn bodies<'a, 'l>(layers: &'a [&'l Layer]) -> impl Iterator<Item = &'a [&'l Layer]> {
+    layers.chunk_by(|a, b| a.body == b.body)
+}
+
+/// How a body grows after each of its layers, and how it ends.
+fn body_grown(
+    layers: &[&Layer],
+    profile: &Profile,
+    settings: DepositSettings,
+    task: &Task,
+) -> Result<(Vec<Growth>, Option<Growth>), Cancelled> {
+    let stacks = !profile.layers.chart.goes_around();
+    let Some(bounds) = extent(layers).filter(|_| stacks) else { return Ok((vec![Growth::default(); layers.len()], None)) };
     let mut stack = Stack::new(&bounds, settings);
-    for layer in layers.iter().map(L::borrow).filter(|layer| is_finite(layer)) {
+    for layer in layers.iter().filter(|layer| is_finite(layer)) {
         task.check()?;
         stack.add(&plan::welded(layer, profile));
     }
-    Ok(Grown { layers: stack.growth().to_vec(), built: stack.built() })
+    Ok((stack.growth().to_vec(), stack.built()))
 }
 
 /// Where passes lie, seen from above.
@@ -226,9 +254,26 @@ pub fn check<L: Borrow<Layer>>(
 /// Runs all checks on a plan that has been judged.
 pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, judged: LayerFigures) -> Vec<Finding> {
     let LayerFigures { figures, grown: Grown { layers: growth, built }, .. } = judged;
-    let layers = layers.iter().map(L::borrow).collect();
-    let subject = Subject { layers, profile, figures, growth, built };
-    CHECKS.iter().flat_map(|check| (check.find)(&subject)).map(|finding| subject.located(finding)).collect()
+    let layers: Vec<&Layer> = layers.iter().map(L::borrow).collect();
+    let (mut found, mut first) = (Vec::new(), 0);
+    for (i, body) in bodies(&layers).enumerate() {
+        let own = first..first + body.len();
+        let part = |all: usize| own.start.min(all)..own.end.min(all);
+        let profile = &*profile.of_body(body[0].body);
+        let subject = Subject {
+            layers: body.to_vec(),
+            profile,
+            figures: figures[part(figures.len())].to_vec(),
+            growth: growth[part(growth.len())].to_vec(),
+            built: built.get(i).copied().flatten(),
+        };
+        found.extend(CHECKS.iter().flat_map(|check| (check.find)(&subject)).map(|finding| subject.located(finding)));
+        first = own.end;
+    }
+    // What is wrong with the profile is so for each body.
+    let mut known = BTreeSet::new();
+    found.retain(|finding| finding.layer.is_some() || known.insert(finding.text.clone()));
+    found
 }
 
 /// The check with this name.

@@ -23,6 +23,7 @@ pub fn rehearse(profile: &Profile) -> Vec<(String, Fault)> {
     // What is rehearsed are the lines of the profile; the two layers lie anywhere.
     let mut profile = profile.clone();
     profile.layers.chart = Chart::default();
+    profile.layers.bodies.clear();
     let profile = &profile;
     let posts = profile.posts.iter().filter(|post| !own::is_folder(post) && *post != "marlin");
     posts.flat_map(|post| faults(profile, post).into_iter().map(|fault| (post.clone(), fault))).collect()

@@ -22,7 +22,7 @@ pub(super) const KIND: &str = "kind";
 
 /// The columns of measures; normals only where layers are not level, temperatures only where they were computed.
 pub(super) fn measures(beads: &Beads<'_>) -> Vec<&'static Column> {
-    let normals = NORMALS.iter().filter(|_| !beads.profile.layers.chart.is_level());
+    let normals = NORMALS.iter().filter(|_| !beads.profile.layers.are_level());
     MEASURES.iter().chain(normals).chain(beads.heat.map(|_| &TEMPERATURE)).collect()
 }
 

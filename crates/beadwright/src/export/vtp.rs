@@ -50,7 +50,7 @@ fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     number("layer", |p| p.layer);
     number("pass", |p| p.pass);
     number("kind", |p| KINDS.iter().position(|kind| *kind == p.kind).unwrap_or_default());
-    if !beads.profile.layers.chart.is_level() {
+    if !beads.profile.layers.are_level() {
         let normals = pieces.iter().flat_map(|p| p.normal.to_array()).flat_map(f64::to_le_bytes);
         push(&mut text, "type=\"Float64\" Name=\"normal\" NumberOfComponents=\"3\"", normals);
     }

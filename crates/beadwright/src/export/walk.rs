@@ -36,7 +36,9 @@ pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
     let mut travel = 0.0;
     for layer in layers.iter().filter(|layer| !layer.passes.is_empty()) {
         walk.tilt.iter_mut().for_each(|tilt| tilt.enter(layer));
-        let mut of_layer = walk.torch.begin_layer(layer.index, layer.lit, layer.middle());
+        let begun = walk.torch.begin_layer(layer, 0);
+        travel += begun.transfer.map_or(0.0, |way| way.moving);
+        let mut of_layer = begun.pause;
         for (number, pass) in (1..).zip(&layer.passes) {
             let Some(start) = pass.start() else { continue };
             let pauses = [of_layer.take(), walk.torch.wait(pass.wait)];

@@ -289,7 +289,7 @@ impl PlanFiles {
             if !layers.is_empty() {
                 let settings = plan::deposit_settings_over(&self.profile, self.part);
                 let grown = check::grown(&layers, &self.profile, settings, task)?;
-                self.built = grown.built;
+                self.built = grown.worst();
                 let judged = LayerFigures { figures, grown, ..LayerFigures::default() };
                 findings = check::check_figures(&layers, &self.profile, judged);
             }

@@ -13,7 +13,7 @@ use planar::{Bounds, Polygon, Ring};
 use std::borrow::Cow;
 
 /// The edges of a mesh in the coordinates of a chart lie this close to the true ones, mm.
-const TOLERANCE: f64 = 0.02;
+pub(super) const TOLERANCE: f64 = 0.02;
 
 /// A mesh in the coordinates in which its layers are level.
 ///

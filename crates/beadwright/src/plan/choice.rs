@@ -40,28 +40,48 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     match part {
         Part::Curves { .. } => profile.fill.strategy = StrategyName::Wall,
         Part::Mesh(import) if is_wall_surface(&import.mesh, &profile) => profile.fill.strategy = StrategyName::Wall,
-        Part::Mesh(import) if !kept && profile.fill.strategy == StrategyName::Loop => {
-            let mesh = match charted::unrolled(&import.mesh, &profile, task) {
-                Err(WarpError::Cancelled(cancelled)) => return Err(cancelled),
-                // The plan says why.
-                Err(WarpError::Torn(_)) => return Ok(Choice { profile, note }),
-                Ok(mesh) => mesh,
-            };
-            if let Some(walls) = walls(&mesh, &profile, task)? {
-                profile.fill.strategy = StrategyName::Wall;
-                if walls == Walls::Thick && profile.layers.predict == Predict::Auto {
-                    profile.layers.predict = Predict::Never;
+        Part::Mesh(_) if kept => {}
+        Part::Mesh(import) if !profile.layers.bodies.is_empty() => {
+            let mut named = Vec::new();
+            for k in 0..profile.layers.bodies.len() {
+                let own = profile.of_body(k).into_owned();
+                let body = &mut profile.layers.bodies[k];
+                if let Some((strategy, predict)) = of_solid(&body.of_mesh(&import.mesh), &own, task)? {
+                    (body.strategy, body.predict) = (Some(strategy), Some(predict));
+                    named.push(body.name.clone());
                 }
-                note = Some(
-                    "Strategy wall instead of loop: all of the part is walls for one bead; if you ask for loop by name, it is \
-                     kept."
-                        .to_owned(),
-                );
+            }
+            note = (!named.is_empty()).then(|| format!("{ALL_WALLS} ({}).", named.join(", ")));
+        }
+        Part::Mesh(import) => {
+            if let Some((strategy, predict)) = of_solid(&import.mesh, &profile, task)? {
+                (profile.fill.strategy, profile.layers.predict) = (strategy, predict);
+                note = Some(format!("{ALL_WALLS}; if you ask for loop by name, it is kept."));
             }
         }
-        Part::Mesh(_) => {}
     }
     Ok(Choice { profile, note })
+}
+
+/// Why `loop` does not fill what it could.
+const ALL_WALLS: &str = "Strategy wall instead of loop: all of the part is walls for one bead";
+
+/// What fills a solid instead of `loop`, and when the heights of its layers are then predicted; `None` where it stays as it is.
+fn of_solid(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<(StrategyName, Predict)>, Cancelled> {
+    if profile.fill.strategy != StrategyName::Loop {
+        return Ok(None);
+    }
+    let mesh = match charted::unrolled(mesh, profile, task) {
+        Err(WarpError::Cancelled(cancelled)) => return Err(cancelled),
+        // The plan says why.
+        Err(WarpError::Torn(_)) => return Ok(None),
+        Ok(mesh) => mesh,
+    };
+    let predict = |walls: Walls| match profile.layers.predict {
+        Predict::Auto if walls == Walls::Thick => Predict::Never,
+        as_it_is => as_it_is,
+    };
+    Ok(walls(&mesh, profile, task)?.map(|walls| (StrategyName::Wall, predict(walls))))
 }
 
 /// Whether a mesh is an open surface along which one bead is laid.

@@ -1,5 +1,6 @@
 //! How the deposit model treats plans made with a profile.
 
+use crate::chart::Chart;
 use crate::deposit::{DepositSettings, Nominal};
 use crate::layer::Layer;
 use crate::profile::Profile;
@@ -48,7 +49,7 @@ fn as_welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
 pub fn deposit_settings(profile: &Profile) -> DepositSettings {
     let (bead, pace) = (profile.bead(), profile.process.deposition_speed);
     let nominal = Nominal { bead, pace, rise: bead.rise(profile.stepover()) };
-    let over_one_another = !profile.layers.chart.goes_around();
+    let over_one_another = !profile.layers.charts().any(Chart::goes_around);
     DepositSettings { over_one_another, ..DepositSettings::new(nominal, profile.fill.machining_allowance) }
 }
 

@@ -6,6 +6,8 @@
 //!
 //! | file | what it does |
 //! | --- | --- |
+//! | `beside` | whether the torch has room next to finished bodies |
+//! | `bodies` | parts that are welded as several bodies, each with layers of its own kind |
 //! | [`clearance`] | whether the torch has room next to finished parts |
 //! | `parts` | parts that are welded one after another |
 //! | `centre_lines` | walls of one bead by their centre-lines |
@@ -30,6 +32,8 @@
 //! | `wedges` | where layers lie that are thicker at some places than at others |
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
+mod beside;
+mod bodies;
 mod candidates;
 mod centre_lines;
 pub mod charted;
@@ -85,7 +89,7 @@ use planar::Bounds;
 use rayon::prelude::*;
 use reasons::{left_over, other_volume, why_empty};
 use std::convert::Infallible;
-use support::Support;
+use support::{Footing, Support};
 use warm::{Heat, Warmth};
 
 /// No plan has more layers than this.
@@ -134,9 +138,13 @@ pub fn plan_into<'a, S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     let given = part.into();
+    if !profile.layers.bodies.is_empty() {
+        return bodies::bodies_into(name, given, profile, task, sink);
+    }
     let unrolled = Unrolled::of(given, profile, task)?;
     let part = unrolled.as_ref().map_or(given, Unrolled::part);
-    let mut summary = plan_at(&warm::predicted(part, profile, task)?, name, part, profile, task, sink)?;
+    let warmth = warm::predicted(part, profile, task)?;
+    let mut summary = plan_at(&warmth, name, part, Footing::Plate, profile, task, sink)?;
     if let (Some(_), PartRef::Mesh { mesh: placed, .. }, PartRef::Mesh { mesh, .. }) = (&unrolled, given, part) {
         summary.notes.extend(charted::notes(placed, mesh, profile));
         summary.forbidden.extend(charted::too_narrow(mesh.bounds().1.z, profile));
@@ -149,13 +157,15 @@ fn plan_at<S: Sink + Send>(
     warmth: &Warmth,
     name: &str,
     part: PartRef,
+    footing: Footing,
     profile: &Profile,
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     match part {
         PartRef::Mesh { mesh, milled } => {
-            plan_mesh(warmth, name, (mesh, milled), profile.fill.strategy.strategy(), profile, task, sink)
+            let strategy = profile.fill.strategy.strategy();
+            plan_mesh(warmth, name, (mesh, milled), footing, strategy, profile, task, sink)
         }
         PartRef::Curves(curves, height) => plan_curves(warmth, name, curves, height, profile, task, sink),
     }
@@ -175,13 +185,14 @@ pub fn plan_with<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let mesh = &*charted::unrolled(mesh, profile, task)?;
     let warmth = warm::predicted(mesh.into(), profile, task)?;
-    plan_mesh(&warmth, name, (mesh, None), strategy, profile, task, sink)
+    plan_mesh(&warmth, name, (mesh, None), Footing::Plate, strategy, profile, task, sink)
 }
 
 fn plan_mesh<S: Sink + Send>(
     warmth: &Warmth,
     name: &str,
     (mesh, milled): (&Mesh, Option<&Mesh>),
+    footing: Footing,
     strategy: &dyn Strategy,
     profile: &Profile,
     task: &Task,
@@ -218,7 +229,7 @@ fn plan_mesh<S: Sink + Send>(
     };
     let (low, high) = mesh.bounds();
     let extent = Extent { layers: slicer.layer_count(), low, high };
-    let mut summary = run([name, strategy.name()], extent, heat, profile, task, sink, fill_batch)?;
+    let mut summary = run([name, strategy.name()], extent, (heat, footing), profile, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(why_empty(&summary, mesh, profile)));
     }
@@ -310,7 +321,7 @@ fn plan_curves<S: Sink + Send>(
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let mut summary = run([name, profile.fill.strategy.name()], extent, heat, profile, task, sink, fill_batch)?;
+    let mut summary = run([name, profile.fill.strategy.name()], extent, (heat, Footing::Plate), profile, task, sink, fill_batch)?;
     summary.notes.extend(centre_lines::other_thickness(given, profile));
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(
@@ -326,7 +337,7 @@ fn plan_curves<S: Sink + Send>(
 fn run<S: Sink + Send>(
     [part, strategy]: [&str; 2],
     extent: Extent,
-    heat: Heat,
+    (heat, footing): (Heat, Footing),
     profile: &Profile,
     task: &Task,
     sink: &mut S,
@@ -343,11 +354,14 @@ fn run<S: Sink + Send>(
         memory: order::Memory::default(),
         helix: profile.wall.helix.then(|| Helix::new(extent.layers, profile.longest_pass())),
         no_turn: None,
-        support: Support::default(),
+        below: match &footing {
+            Footing::Plate => Vec::new(),
+            Footing::Metal(islands) => islands.clone(),
+        },
+        support: Support::on(footing),
         grown: Some(deposit_settings_over(profile, (extent.low, extent.high)))
             .filter(|settings| profile.is_level() && settings.over_one_another)
             .map(|settings| Stack::new(&extent.seen_from_above(), settings)),
-        below: Vec::new(),
         before: Vec::new(),
         below_middle: 0.0,
         built: 0.0,

@@ -1,6 +1,7 @@
 //! Parts that are welded one after another: one plan, whose layers are those of the first part, then of the second, and so on.
 
 use super::clearance::{Clearance, Close, Watch};
+use super::support::Footing;
 use super::warm::Warmth;
 use super::{Header, PlanError, Sink, Summary, plan_at, slabs_of, warm};
 use crate::layer::{Extent, Layer};
@@ -25,8 +26,8 @@ pub fn parts_into<S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     let torch = torch_of(profile)?;
-    if !profile.layers.chart.is_level() {
-        return Err(PlanError::Parts("layers.chart: only parts with level layers can be"));
+    if !profile.layers.are_level() || !profile.layers.bodies.is_empty() {
+        return Err(PlanError::Parts("layers.chart, layers.bodies: only parts with level layers can be"));
     }
     if !profile.process.layers.is_empty() {
         return Err(PlanError::Parts(
@@ -53,7 +54,7 @@ pub fn parts_into<S: Sink + Send>(
     for (((name, part), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
         clearance.begin(name);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
-        let own = plan_at(warmth, name, *part, profile, task, &mut watch)?;
+        let own = plan_at(warmth, name, *part, Footing::Plate, profile, task, &mut watch)?;
         told.add(name, &own);
         volume = volume.zip(own.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
         row.first += count;
@@ -89,17 +90,17 @@ fn sentence(parts: &[(String, PartRef)], counts: &[usize]) -> String {
 }
 
 /// What is reported about the parts, each thing once.
-struct Told {
-    notes: Vec<String>,
-    forbidden: Vec<String>,
+pub(super) struct Told {
+    pub(super) notes: Vec<String>,
+    pub(super) forbidden: Vec<String>,
 }
 
 impl Told {
-    fn of(profile: &Profile) -> Self {
+    pub(super) fn of(profile: &Profile) -> Self {
         Self { notes: profile.notes(), forbidden: profile.forbidden() }
     }
 
-    fn add(&mut self, part: &str, own: &Summary) {
+    pub(super) fn add(&mut self, part: &str, own: &Summary) {
         let named = |known: &mut Vec<String>, new: &[String]| {
             let new: Vec<String> =
                 new.iter().filter(|text| !known.contains(text)).map(|text| format!("{part}: {text}")).collect();

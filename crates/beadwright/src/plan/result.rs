@@ -155,6 +155,14 @@ pub enum PlanError<E> {
     /// Parts cannot be welded one after another with this profile.
     #[error("the parts cannot be welded one after another: {0}")]
     Parts(&'static str),
+    /// A body cannot be planned.
+    #[error("body {name} (layers.bodies): {reason}")]
+    Body {
+        /// What it is called.
+        name: String,
+        /// Why, as a sentence.
+        reason: String,
+    },
     /// The sink failed.
     #[error(transparent)]
     Sink(E),

@@ -46,7 +46,7 @@ impl Stocked {
     /// [`PlanError::Cancelled`].
     pub fn of(part: Part, profile: &Profile, task: &Task) -> Result<Self, PlanError<Infallible>> {
         let Part::Mesh(mut import) = part else { return Err(PlanError::NoSolid) };
-        if !profile.layers.chart.is_level() {
+        if !profile.layers.are_level() {
             return Err(PlanError::PreformOfChart);
         }
         is_closed(&import.mesh, profile)?;

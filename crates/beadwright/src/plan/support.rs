@@ -39,6 +39,18 @@ pub(super) struct Support {
     before: (Vec<Pass>, Vec<Polygon>),
     /// Height of its middle, mm.
     middle: f64,
+    /// Whether its outlines are solid metal: those of bodies on which this one begins.
+    is_solid: bool,
+}
+
+/// What the first layer of a body lies on.
+#[derive(Debug, Clone, Default)]
+pub(super) enum Footing {
+    /// Metal everywhere: a plate, or what the chart says is there.
+    #[default]
+    Plate,
+    /// Metal within these outlines, seen on the first layer's underside.
+    Metal(Vec<Polygon>),
 }
 
 /// Footprints of passes.
@@ -49,11 +61,19 @@ struct Metal {
 }
 
 impl Support {
+    /// What the first layer lies on.
+    pub(super) fn on(footing: Footing) -> Self {
+        match footing {
+            Footing::Plate => Self::default(),
+            Footing::Metal(islands) => Self { islands, is_solid: true, ..Self::default() },
+        }
+    }
+
     /// Warns of passes that lie in the air, takes out small islands that hang, and remembers the layer for the next one.
     /// Sparse layers support the next as if they were filled, and printed beads bridge gaps. The upper of two layers stands on
     /// the lower one and on what lies below that.
     pub(super) fn judge(&mut self, layer: &mut Layer, profile: &Profile) {
-        let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0);
+        let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0 && !self.is_solid);
         if let Some(across) = Across::new(&profile.layers.chart, self.middle, layer.middle()) {
             self.passes = across.passes(&self.passes);
             self.islands = across.islands(&self.islands);
@@ -64,7 +84,7 @@ impl Support {
             self.islands.append(&mut self.before.1);
         }
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
-        if !self.passes.is_empty() && !alike {
+        if (self.is_solid || !self.passes.is_empty()) && !alike {
             let metal = Metal::of(&self.passes, width);
             let within = |p: DVec2| !solid && self.islands.iter().any(|island| island.contains(p));
             let below = |p: DVec2| match metal.is_at(p, 0.0) || within(p) {
@@ -81,7 +101,7 @@ impl Support {
         }
         let passes = std::mem::replace(&mut self.passes, layer.passes.clone());
         self.before = (passes, std::mem::replace(&mut self.islands, layer.islands.clone()));
-        self.middle = layer.middle();
+        (self.middle, self.is_solid) = (layer.middle(), false);
     }
 
     /// Whether an island of the layer that was judged last was left out.

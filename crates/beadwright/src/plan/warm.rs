@@ -1,5 +1,6 @@
 //! What heat does to beads: on warm metal they spread, and the layers of a wall rise less.
 
+use super::support::Footing;
 use super::{Collect, PlanError, plan_at};
 use crate::bead::BeadByHeat;
 use crate::heat::{Build, LayerHeat, PassHeat};
@@ -70,7 +71,7 @@ pub(super) fn predicted<E>(part: PartRef, profile: &Profile, task: &Task) -> Res
     let Some(wall) = wall else { return Ok(warmth) };
     for _ in 0..ROUNDS {
         let mut planned = Collect::default();
-        match plan_at(&warmth, "", part, profile, task, &mut planned) {
+        match plan_at(&warmth, "", part, Footing::Plate, profile, task, &mut planned) {
             Ok(_) => {}
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled.into()),
             // The plan itself reports what is wrong.

@@ -1,5 +1,6 @@
 //! The section `[layers]`.
 
+use super::Body;
 use crate::chart::{Chart, Sheet};
 use crate::layer::Layer;
 use crate::limit::{Limit, limits};
@@ -45,6 +46,9 @@ pub struct LayersSection {
     #[serde(default, skip_serializing_if = "Chart::is_level")]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub chart: Chart,
+    /// The bodies as which a part is welded, one after another, each with layers of its own kind; optional.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<Body>,
 }
 
 fn yes() -> bool {
@@ -70,14 +74,31 @@ const THIN: f64 = 0.6;
 const THICK: f64 = 1.4;
 
 impl LayersSection {
+    /// How the layers of each body lie in space; of a part that is one body, the one chart.
+    pub fn charts(&self) -> impl Iterator<Item = &Chart> {
+        let one = self.bodies.is_empty().then_some(&self.chart);
+        self.bodies.iter().map(|body| &body.chart).chain(one)
+    }
+
+    /// Whether all layers are level.
+    pub fn are_level(&self) -> bool {
+        self.charts().all(Chart::is_level)
+    }
+
+    /// How the layers of a layer's body lie in space.
+    pub fn chart_of(&self, layer: &Layer) -> &Chart {
+        self.bodies.get(layer.body).map_or(&self.chart, |body| &body.chart)
+    }
+
     /// How a layer lies in space; `None` where it is level.
     pub fn sheet(&self, layer: &Layer) -> Option<Sheet<'_>> {
-        (!self.chart.is_level()).then(|| self.chart.sheet(layer.middle()))
+        let chart = self.chart_of(layer);
+        (!chart.is_level()).then(|| chart.sheet(layer.middle()))
     }
 
     /// The wedge that a layer is; `None` where its thickness is the same everywhere.
     pub fn wedge(&self, layer: &Layer) -> Option<Wedge<'_>> {
-        Wedge::of(layer, &self.chart, self.window())
+        Wedge::of(layer, self.chart_of(layer), self.window())
     }
 
     /// How thin and how thick a bead may be where a layer is not as thick everywhere, mm.

@@ -4,6 +4,7 @@
 //! Unknown keys and impossible values are refused with their line number (`read.rs`, `limits.rs`).
 
 mod bead;
+mod bodies;
 mod check;
 mod dry_run;
 pub mod edit;
@@ -20,6 +21,7 @@ mod slice;
 mod wall;
 
 pub use bead::BeadSection;
+pub use bodies::{BodiesError, Body};
 pub use check::CheckLimits;
 pub use fill::{FillSection, RasterTurn};
 pub use hybrid::HybridSection;
@@ -436,8 +438,8 @@ impl Profile {
     pub fn weld_settings(&self) -> WeldSettings {
         let (process, ends) = (self.process.clone(), self.start_stop.clone());
         let (travel, motion) = (self.travel.clone(), self.motion);
-        let chart = self.layers.chart.clone();
-        let weld = WeldSettings { process, ends, travel, motion, arc_end_time: None, standing: 0.0, chart };
+        let charts = self.layers.charts().cloned().collect();
+        let weld = WeldSettings { process, ends, travel, motion, arc_end_time: None, standing: 0.0, charts };
         let arc_end_time = self.posts.iter().find_map(|post| self.dialects.get(post)?.arc_end_time(&weld));
         WeldSettings { arc_end_time, ..weld }
     }

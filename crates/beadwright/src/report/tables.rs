@@ -18,8 +18,15 @@ use std::collections::BTreeSet;
 /// One sentence about the whole plan.
 pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) -> String {
     let m = &summary.metrics;
-    let chart = &profile.layers.chart;
-    let lie = if chart.is_level() { String::new() } else { format!(" Layers lie on {chart} and are shown unrolled.") };
+    let (layers, bodies) = (&profile.layers, &profile.layers.bodies);
+    let lie = match bodies.len() {
+        _ if layers.are_level() => String::new(),
+        0 => format!(" Layers lie on {} and are shown unrolled.", layers.chart),
+        _ => {
+            let lies: Vec<String> = bodies.iter().map(|body| format!("{} on {}", body.name, body.chart)).collect();
+            format!(" Layers lie as those of several bodies, and are shown unrolled: {}.", lies.join("; "))
+        }
+    };
     format!(
         "{} and {} with the {} strategy: {} of bead from {} of {} wire, in {}.{}",
         count(header.extent.layers, "layer", "layers") + &empty(header, m),

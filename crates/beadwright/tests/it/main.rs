@@ -14,6 +14,7 @@ mod bead_library;
 mod build;
 mod by_heat;
 mod chain;
+mod bodies;
 mod charts;
 mod check;
 mod check_pages;

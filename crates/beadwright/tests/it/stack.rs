@@ -185,7 +185,7 @@ fn planned(name: &str, degrees: f64, level: bool) -> (Plan, Profile) {
 
 fn built(plan: &Plan, profile: &Profile) -> Growth {
     let settings = plan::deposit_settings_over(profile, (plan.header.extent.low, plan.header.extent.high));
-    check::grown(&plan.layers, profile, settings, &Task::new()).unwrap().built.unwrap()
+    check::grown(&plan.layers, profile, settings, &Task::new()).unwrap().worst().unwrap()
 }
 
 #[test]

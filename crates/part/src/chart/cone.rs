@@ -21,6 +21,11 @@ pub struct Cone {
 }
 
 impl Cone {
+    /// The same layers, beginning lower by some mm.
+    pub(super) fn lowered(&self, by: f64) -> Self {
+        Self { tip: self.tip + self.axis * (by / self.half_angle.to_radians().sin()), ..*self }
+    }
+
     fn axes(&self) -> Axes {
         Axes::new(self.axis, self.seam.to_radians())
     }

@@ -199,6 +199,16 @@ impl Guide {
         At { place: origin + along[0] * p.x + along[1] * p.y + forth * out, along, normal: forth }
     }
 
+    /// The same guide, beginning earlier by some mm.
+    pub(super) fn begun_earlier(&self, by: f64) -> Self {
+        let mut points = self.points.clone();
+        points[0] -= self.spans[0].start.forth * by;
+        let bends = self.spans.iter().map(|span| span.bend.length()).filter(|bend| *bend > 0.0);
+        let radii: Vec<f64> = bends.map(f64::recip).collect();
+        let radii = if self.radii.is_empty() && radii.len() + 2 == points.len() { radii } else { self.radii.clone() };
+        Self::new(points, radii).unwrap_or_else(|_| self.clone())
+    }
+
     /// Back from [`Self::at`].
     pub(super) fn on_layer(&self, p: DVec3, middle: f64) -> DVec3 {
         let Frame { origin, along, forth } = self.span(middle).frame(middle);

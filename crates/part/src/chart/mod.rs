@@ -95,6 +95,19 @@ impl Chart {
         self.polar().is_some()
     }
 
+    /// The same layers, beginning lower by some mm: what lies under the first layer is then among them.
+    pub fn lowered(&self, by: f64) -> Self {
+        match self {
+            Self::Plane(plane) => Self::Plane(Plane { origin: plane.origin - plane.up * by, ..*plane }),
+            Self::Cylinder(cylinder) => {
+                let inwards = if cylinder.side == Side::Inner { -by } else { by };
+                Self::Cylinder(Cylinder { radius: (cylinder.radius - inwards).max(0.0), ..*cylinder })
+            }
+            Self::Cone(cone) => Self::Cone(cone.lowered(by)),
+            Self::Guide(guide) => Self::Guide(Arc::new(guide.begun_earlier(by))),
+        }
+    }
+
     /// The name that people type.
     pub fn name(&self) -> &'static str {
         match self {

@@ -2,16 +2,22 @@
 //! stands on a plate.
 
 use super::At;
+use crate::model::{Mesh, cut};
 use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
 
-/// Layers square to a direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Layers square to a direction. In files it is text, as people write it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub struct Plane {
     /// The point of the first layer's underside that has the coordinates 0, mm.
     pub origin: DVec3,
     /// Unit vector along which layers follow one another.
     pub up: DVec3,
 }
+
+/// Faces this close above a plane lie in it, mm: those that only touch it leave nothing.
+const IN_IT: f64 = 1e-4;
 
 impl Default for Plane {
     fn default() -> Self {
@@ -22,6 +28,29 @@ impl Default for Plane {
 impl Plane {
     fn turn(&self) -> DQuat {
         DQuat::from_rotation_arc(DVec3::Z, self.up)
+    }
+
+    /// What of a mesh lies above the plane, closed by a flat face; nothing of one that lies below.
+    ///
+    /// ```
+    /// use bead_part::{chart::Plane, example};
+    ///
+    /// // A cross 20 mm high, cut by a plane that leans by 45 degrees through its middle: half of it is left.
+    /// let cross = example::find("cross").ok_or("no such example")?.mesh();
+    /// let half: Plane = "up=1/0/1,through=0/0/10".parse()?;
+    /// assert!((half.above(&cross).volume() / cross.volume() - 0.5).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn above(&self, mesh: &Mesh) -> Mesh {
+        let mut own = mesh.clone();
+        own.vertices.iter_mut().for_each(|p| *p = self.coordinates(*p));
+        if own.bounds().0.z < 0.0 {
+            own = cut::above(&own, IN_IT).map_or_else(Mesh::default, |(above, _)| above);
+            let lifted = own.vertices.iter_mut().filter(|p| p.z > 0.0);
+            lifted.for_each(|p| p.z += IN_IT);
+        }
+        own.vertices.iter_mut().for_each(|p| *p = self.at(*p).place);
+        own
     }
 
     pub(super) fn coordinates(&self, p: DVec3) -> DVec3 {

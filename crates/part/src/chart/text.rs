@@ -36,6 +36,9 @@ pub enum ChartError {
         /// What may be written.
         expected: &'static str,
     },
+    /// Something else than a plane where half of the space is meant.
+    #[error("\"{0}\" is no plane: write up=X/Y/Z,through=X/Y/Z; what lies above it is kept")]
+    Half(String),
     /// Points and radii that give no guide.
     #[error(transparent)]
     Guide(#[from] GuideError),
@@ -62,10 +65,7 @@ impl FromStr for Chart {
     fn from_str(text: &str) -> Result<Self, ChartError> {
         let (name, values) = text.split_once(':').unwrap_or((text, ""));
         match name.trim() {
-            "plane" => {
-                let given = Given::new("plane", PLANE, values, &["up", "through"])?;
-                Ok(Self::Plane(Plane { up: given.direction("up")?, origin: given.place("through")? }))
-            }
+            "plane" => Ok(Self::Plane(plane(values)?)),
             "cylinder" => {
                 let keys = ["axis", "through", "radius", "side", "seam"];
                 let given = Given::new("cylinder", CYLINDER, values, &keys)?;
@@ -95,6 +95,24 @@ impl FromStr for Chart {
     }
 }
 
+fn plane(values: &str) -> Result<Plane, ChartError> {
+    let given = Given::new("plane", PLANE, values, &["up", "through"])?;
+    Ok(Plane { up: given.direction("up")?, origin: given.place("through")? })
+}
+
+impl FromStr for Plane {
+    type Err = ChartError;
+
+    /// Reads `up=0/0/1,through=0/0/60`, with or without the chart's name before it.
+    fn from_str(text: &str) -> Result<Self, ChartError> {
+        match text.split_once(':') {
+            Some((name, _)) if name.trim() != "plane" => Err(ChartError::Half(text.to_owned())),
+            Some((_, values)) => plane(values),
+            None => plane(text),
+        }
+    }
+}
+
 /// Stands between the values of a list.
 const BETWEEN: &str = ":";
 /// Where layers are cut open if nothing is written, °: the angle 0 is that of x.
@@ -102,26 +120,50 @@ const SEAM: f64 = 180.0;
 
 impl fmt::Display for Chart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let three = |v: DVec3| format!("{}/{}/{}", v.x, v.y, v.z);
         match self {
-            Self::Plane(Plane { origin, up }) => write!(f, "plane:up={},through={}", three(*up), three(*origin)),
+            Self::Plane(plane) => write!(f, "plane:{plane}"),
             Self::Cylinder(Cylinder { through, axis, radius, side, seam }) => {
                 let side = if *side == Side::Inner { "inner" } else { "outer" };
-                let (axis, through) = (three(*axis), three(*through));
+                let (axis, through) = (three_of(*axis), three_of(*through));
                 write!(f, "cylinder:axis={axis},through={through},radius={radius},side={side},seam={seam}")
             }
             Self::Cone(Cone { tip, axis, half_angle, seam }) => {
-                write!(f, "cone:axis={},tip={},angle={half_angle},seam={seam}", three(*axis), three(*tip))
+                write!(f, "cone:axis={},tip={},angle={half_angle},seam={seam}", three_of(*axis), three_of(*tip))
             }
             Self::Guide(guide) => {
                 let joined = |values: Vec<String>| values.join(BETWEEN);
-                write!(f, "guide:points={}", joined(guide.points().iter().map(|p| three(*p)).collect()))?;
+                write!(f, "guide:points={}", joined(guide.points().iter().map(|p| three_of(*p)).collect()))?;
                 match guide.radii() {
                     [] => Ok(()),
                     radii => write!(f, ",radius={}", joined(radii.iter().map(f64::to_string).collect())),
                 }
             }
         }
+    }
+}
+
+/// A vector as it is read.
+fn three_of(v: DVec3) -> String {
+    format!("{}/{}/{}", v.x, v.y, v.z)
+}
+
+impl fmt::Display for Plane {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "up={},through={}", three_of(self.up), three_of(self.origin))
+    }
+}
+
+impl From<Plane> for String {
+    fn from(plane: Plane) -> Self {
+        plane.to_string()
+    }
+}
+
+impl TryFrom<String> for Plane {
+    type Error = ChartError;
+
+    fn try_from(text: String) -> Result<Self, ChartError> {
+        text.parse()
     }
 }
 

@@ -5,6 +5,7 @@
 //! | `bracket`, `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one solid part each |
 //! | `hub`, `shaft` | one part each that is welded in layers around its axis |
 //! | `elbow` | a part that is welded in layers square to its middle line |
+//! | `y_tube` | a part that is welded as several bodies |
 //! | [`blade`], `gourd`, `pot`, `tian`, `wall` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
 
@@ -24,6 +25,7 @@ mod star;
 mod tian;
 mod vase;
 mod wall;
+mod y_tube;
 
 use crate::curve::Nurbs;
 use crate::model::iges::{self, WriteOptions};
@@ -41,6 +43,8 @@ pub struct Example {
     curves: Option<fn() -> Vec<Nurbs>>,
     /// How its layers lie if they are not level: [`Chart`](crate::chart::Chart) as text.
     pub chart: Option<&'static str>,
+    /// The bodies as which it is welded, if they are several: the text of a file of bodies.
+    several: Option<&'static str>,
 }
 
 /// Every example, by name.
@@ -51,6 +55,7 @@ pub const ALL: &[Example] = &[
         build: blade::build,
         curves: Some(blade::curves),
         chart: None,
+        several: None,
     },
     Example {
         name: "bracket",
@@ -58,6 +63,7 @@ pub const ALL: &[Example] = &[
         build: bracket::build,
         curves: None,
         chart: None,
+        several: None,
     },
     Example {
         name: "cross",
@@ -65,6 +71,7 @@ pub const ALL: &[Example] = &[
         build: cross::build,
         curves: None,
         chart: None,
+        several: None,
     },
     Example {
         name: "elbow",
@@ -72,6 +79,7 @@ pub const ALL: &[Example] = &[
         build: elbow::build,
         curves: None,
         chart: Some(elbow::CHART),
+        several: None,
     },
     Example {
         name: "gear",
@@ -79,6 +87,7 @@ pub const ALL: &[Example] = &[
         build: gear::build,
         curves: None,
         chart: None,
+        several: None,
     },
     Example {
         name: "gourd",
@@ -86,6 +95,7 @@ pub const ALL: &[Example] = &[
         build: gourd::build,
         curves: Some(gourd::curves),
         chart: None,
+        several: None,
     },
     Example {
         name: "hub",
@@ -93,6 +103,7 @@ pub const ALL: &[Example] = &[
         build: hub::build,
         curves: None,
         chart: Some("cylinder:axis=z,radius=40"),
+        several: None,
     },
     Example {
         name: "plate",
@@ -100,6 +111,7 @@ pub const ALL: &[Example] = &[
         build: plate::build,
         curves: None,
         chart: None,
+        several: None,
     },
     Example {
         name: "pot",
@@ -107,6 +119,7 @@ pub const ALL: &[Example] = &[
         build: pot::build,
         curves: Some(pot::curves),
         chart: None,
+        several: None,
     },
     Example {
         name: "propeller",
@@ -114,6 +127,7 @@ pub const ALL: &[Example] = &[
         build: propeller::build,
         curves: None,
         chart: None,
+        several: None,
     },
     Example {
         name: "shaft",
@@ -121,6 +135,7 @@ pub const ALL: &[Example] = &[
         build: shaft::build,
         curves: None,
         chart: Some("cylinder:axis=z,radius=25"),
+        several: None,
     },
     Example {
         name: "star",
@@ -128,6 +143,7 @@ pub const ALL: &[Example] = &[
         build: star::build,
         curves: None,
         chart: None,
+        several: None,
     },
     Example {
         name: "tian",
@@ -135,6 +151,7 @@ pub const ALL: &[Example] = &[
         build: tian::build,
         curves: Some(tian::curves),
         chart: None,
+        several: None,
     },
     Example {
         name: "vase",
@@ -142,6 +159,7 @@ pub const ALL: &[Example] = &[
         build: vase::build,
         curves: None,
         chart: None,
+        several: None,
     },
     Example {
         name: "wall",
@@ -149,6 +167,15 @@ pub const ALL: &[Example] = &[
         build: wall::build,
         curves: Some(wall::curves),
         chart: None,
+        several: None,
+    },
+    Example {
+        name: "y-tube",
+        about: "tube of 60 mm with a 16 mm wall that forks into two, welded as three bodies, 156 × 60 × 156 mm",
+        build: y_tube::build,
+        curves: None,
+        chart: None,
+        several: Some(y_tube::BODIES),
     },
 ];
 
@@ -163,6 +190,12 @@ impl Example {
         let solid = (self.build)();
         let facets = solid.triangles.iter().map(|t| t.map(|i| solid.vertices[i as usize]));
         stl::write(&format!("beadwright example {}", self.name), facets)
+    }
+
+    /// The bodies as which it is welded, as a file of them (`beadwright plan --bodies`); `None` where its layers are level.
+    pub fn bodies(&self) -> Option<String> {
+        let one = || self.chart.map(|chart| format!("[[body]]\nname = \"{}\"\nchart = \"{chart}\"\n", self.name));
+        self.several.map(str::to_owned).or_else(one)
     }
 
     /// The centre-lines of the wall as an IGES file, mm; `None` for parts that are not thin walls.

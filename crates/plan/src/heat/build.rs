@@ -208,10 +208,8 @@ impl Build {
     /// Begins a layer: the wait that it needs for reasons other than heat.
     pub(super) fn begin(&mut self, layer: &Layer) -> LayerHeat {
         self.process = self.nominal.at_layer(layer.index);
-        let pause = (!layer.passes.is_empty())
-            .then(|| self.torch.begin_layer(layer.index, layer.lit, layer.middle()))
-            .flatten();
-        self.spend(pause.map_or(0.0, |pause| pause.moving + pause.seconds));
+        let begun = self.torch.begin_layer(layer, 0);
+        self.spend(begun.moving() + begun.waiting());
         self.catch_up(None);
         self.body.settle();
         // The layer before may lie in the same level of voxels; an empty one left nothing.

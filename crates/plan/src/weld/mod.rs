@@ -5,6 +5,7 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `path` | a pass with its overlap, hot start and lead-out: points, and the pace to each |
+//! | `room` | the box around all that is welded, around which the torch travels to another body |
 //! | `torch` | follows the torch over passes and layers: travels without arc, times, waits |
 //!
 //! The *pace* of a piece is the speed at which the nominal wire feed lays its metal, mm/s. Depending on
@@ -12,11 +13,12 @@
 //! speed.
 
 mod path;
+mod room;
 mod torch;
 
 pub use path::{lit_ends, path, welded};
 pub use torch::retract_time;
-pub use torch::{Pause, Torch, Way, Welded};
+pub use torch::{Begun, Pause, Torch, Transfer, Way, Welded};
 
 use crate::motion::Motion;
 use crate::process::{Process, StartStop, Travel};
@@ -38,6 +40,13 @@ pub struct WeldSettings {
     pub arc_end_time: Option<f64>,
     /// Height of what stands next to the part before its first pass, mm; the travel to that pass leads over it.
     pub standing: f64,
-    /// How the layers lie in space.
-    pub chart: Chart,
+    /// How the layers of each body lie in space; at least one.
+    pub charts: Vec<Chart>,
+}
+
+impl WeldSettings {
+    /// Whether all layers are level.
+    pub fn is_level(&self) -> bool {
+        self.charts.iter().all(Chart::is_level)
+    }
 }

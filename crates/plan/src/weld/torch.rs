@@ -2,11 +2,12 @@
 
 use super::WeldSettings;
 use super::path::lit_ends;
-use crate::layer::Lit;
+use super::room::Room;
+use crate::layer::{Layer, Lit};
 use crate::motion::Motion;
 use crate::pass::PassKind;
 use crate::process::{Process, StartStop};
-use bead_part::chart::{Chart, Sheet};
+use bead_part::chart::{At, Chart, Sheet};
 use glam::DVec3;
 
 /// Waits are multiples of this, s; they are rounded up, never down.
@@ -25,9 +26,12 @@ pub struct Torch {
     motion: Option<Motion>,
     arc_end_time: Option<f64>,
     travel_speed: f64,
-    /// How layers lie in space, and the height of the current one's middle, mm.
-    chart: Chart,
+    /// How the layers of each body lie in space, the body being welded, and the height of its layer's middle, mm.
+    charts: Vec<Chart>,
+    body: usize,
     middle: f64,
+    /// The room that the welded bodies take, where there are several.
+    room: Room,
     clearance: f64,
     at: Option<DVec3>,
     /// Height of the last pass's end, mm: travels keep clear of it.
@@ -64,6 +68,44 @@ pub struct Way {
     pub moving: f64,
 }
 
+/// The way from the end of one body to the beginning of another, in space: out along the normal, around all that is welded, and to
+/// where the new body's first pass lies straight below.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Transfer {
+    /// Ends of its legs, and how the torch stands there.
+    pub legs: Vec<At>,
+    /// Its length, mm.
+    pub length: f64,
+    /// Its time, s.
+    pub moving: f64,
+}
+
+/// What comes before the first pass of a layer.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Begun {
+    /// The way to another body.
+    pub transfer: Option<Transfer>,
+    /// The wait that the layer before needs.
+    pub pause: Option<Pause>,
+}
+
+impl Begun {
+    /// Length of the moves, mm.
+    pub fn length(&self) -> f64 {
+        self.transfer.as_ref().map_or(0.0, |way| way.length) + self.pause.map_or(0.0, |pause| pause.length)
+    }
+
+    /// Time of the moves, s.
+    pub fn moving(&self) -> f64 {
+        self.transfer.as_ref().map_or(0.0, |way| way.moving) + self.pause.map_or(0.0, |pause| pause.moving)
+    }
+
+    /// Time for which the torch waits, s.
+    pub fn waiting(&self) -> f64 {
+        self.pause.map_or(0.0, |pause| pause.seconds)
+    }
+}
+
 /// The length of a pass and the times it takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Welded {
@@ -95,8 +137,10 @@ impl Torch {
             motion: None,
             arc_end_time: None,
             travel_speed: f64::INFINITY,
-            chart: Chart::default(),
+            charts: vec![Chart::default()],
+            body: 0,
             middle: 0.0,
+            room: Room::default(),
             clearance,
             at: None,
             low: 0.0,
@@ -108,7 +152,7 @@ impl Torch {
 
     /// A torch whose travels and times count.
     pub fn of(settings: &WeldSettings) -> Self {
-        let WeldSettings { process, ends, travel, motion, arc_end_time, standing, chart } = settings.clone();
+        let WeldSettings { process, ends, travel, motion, arc_end_time, standing, charts } = settings.clone();
         Self {
             process: Some(process.at_layer(0)),
             nominal: Some(process),
@@ -117,7 +161,7 @@ impl Torch {
             motion,
             arc_end_time,
             travel_speed: travel.speed,
-            chart,
+            charts,
             highest: standing,
             ..Self::new(travel.clearance)
         }
@@ -133,9 +177,15 @@ impl Torch {
         self.lit
     }
 
+    /// Whether all layers of all bodies are level.
+    pub fn is_level(&self) -> bool {
+        self.charts.iter().all(Chart::is_level)
+    }
+
     /// How the current layer lies in space; `None` where it is level.
     pub fn sheet(&self) -> Option<Sheet<'_>> {
-        (!self.chart.is_level()).then(|| self.chart.sheet(self.middle))
+        let chart = &self.charts[self.body];
+        (!chart.is_level()).then(|| chart.sheet(self.middle))
     }
 
     /// Where it is; `None` before the first pass.
@@ -158,23 +208,44 @@ impl Torch {
         self.usual.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
     }
 
-    /// Begins the layer with this index and middle (mm), with the wait that the previous layer needs, unless the arc stays lit.
-    pub fn begin_layer(&mut self, index: usize, lit: Lit, middle: f64) -> Option<Pause> {
-        let over =
-            |at: DVec3| self.chart.sheet(middle).across(at.truncate(), &self.chart.sheet(self.middle)).extend(at.z);
-        self.at = self.at.map(over);
-        self.middle = middle;
-        self.process = self.nominal.as_ref().map(|process| process.at_layer(index));
+    /// Begins a layer from the pass with the index `first` on: the way to it where it belongs to another body, and the wait that the
+    /// previous layer needs, unless the arc stays lit. Nothing happens where the layer has no passes.
+    pub fn begin_layer(&mut self, layer: &Layer, first: usize) -> Begun {
+        let (Some(start), lit) = (layer.passes.get(first).and_then(|pass| pass.start()), layer.lit) else {
+            return Begun::default();
+        };
+        let transfer = self.move_to(layer, start);
+        self.process = self.nominal.as_ref().map(|process| process.at_layer(layer.index));
         (self.fresh, self.lit, self.ends) = (true, lit, lit_ends(&self.usual, lit));
-        if lit.before {
-            self.seconds = 0.0;
-            return None;
-        }
         let missing = self.usual.min_layer_time - self.seconds;
-        let pause = self.pause(missing.max(self.usual.interpass_time));
+        let waits = if lit.before { 0.0 } else { missing.max(self.usual.interpass_time) };
+        let pause = self.pause(waits);
         // The wait counts for neither layer.
         self.seconds = 0.0;
-        pause
+        Begun { transfer, pause }
+    }
+
+    /// Takes the torch's place to the coordinates of a layer, whose first pass begins at `start`; to another body, it travels.
+    fn move_to(&mut self, layer: &Layer, start: DVec3) -> Option<Transfer> {
+        let (from, middle) = (self.charts[self.body].clone(), std::mem::replace(&mut self.middle, layer.middle()));
+        if layer.body == self.body {
+            let (here, there) = (from.sheet(self.middle), from.sheet(middle));
+            self.at = self.at.map(|at| here.across(at.truncate(), &there).extend(at.z));
+            return None;
+        }
+        self.body = layer.body.min(self.charts.len() - 1);
+        (self.low, self.highest) = (0.0, 0.0);
+        let at = from.sheet(middle).at(self.at.take()?);
+        let entry = self.charts[self.body].sheet(self.middle);
+        let above = start.with_z(start.z + self.room.out(&entry.at(start), self.clearance));
+        let last = entry.at(above);
+        let first = At { place: at.place + at.normal * self.room.out(&at, self.clearance), ..at };
+        let around = self.room.around(first.place, last.place, self.clearance);
+        let legs: Vec<At> = std::iter::once(first).chain(around.into_iter().map(|place| At { place, ..last })).collect();
+        let (length, moving) = self.travel_from(at.place, legs.iter().map(|leg| leg.place));
+        self.seconds += moving;
+        self.at = Some(above);
+        Some(Transfer { legs, length, moving })
     }
 
     /// Waits for `seconds` before a pass, above the part; `None` where there is nothing to wait for.
@@ -227,8 +298,9 @@ impl Torch {
 
     /// Counts turns around the chart's axis so that the way to a place is short.
     pub fn turn_towards(&mut self, to: DVec3) {
-        let Some(at) = self.at.filter(|_| self.chart.goes_around()) else { return };
-        let sheet = self.chart.sheet(self.middle);
+        let chart = &self.charts[self.body];
+        let Some(at) = self.at.filter(|_| chart.goes_around()) else { return };
+        let sheet = chart.sheet(self.middle);
         let turns = sheet.turns_to(at.truncate(), to.truncate()).round();
         self.at = Some(sheet.turned(at.truncate(), turns).map_or(at, |p| p.extend(at.z)));
     }
@@ -256,9 +328,12 @@ impl Torch {
     /// Length and time of a travel from where the torch is, mm and s; its legs begin and end at rest. The travel to
     /// the very first point counts as 0.
     fn travel(&self, legs: &[DVec3]) -> (f64, f64) {
-        let Some(mut at) = self.at else { return (0.0, 0.0) };
+        self.at.map_or((0.0, 0.0), |at| self.travel_from(at, legs.iter().copied()))
+    }
+
+    fn travel_from(&self, mut at: DVec3, legs: impl Iterator<Item = DVec3>) -> (f64, f64) {
         let (mut length, mut time) = (0.0, 0.0);
-        for &to in legs {
+        for to in legs {
             let leg = at.distance(to);
             length += leg;
             time += self.motion.map_or(leg / self.travel_speed, |m| m.seconds(at, [(to, self.travel_speed)]));
@@ -302,6 +377,10 @@ impl Torch {
         if let Some(&(end, _)) = moves.last() {
             (self.at, self.low) = (Some(end), end.z);
             self.highest = moves.iter().fold(self.highest, |high, (place, _)| high.max(place.z));
+            if self.charts.len() > 1 {
+                let sheet = self.charts[self.body].sheet(self.middle);
+                moves.iter().for_each(|(place, _)| self.room.add(sheet.at(*place).place));
+            }
         }
         welded
     }

@@ -3,6 +3,7 @@
 
 use super::{Attitude, Instruction, rounded};
 use bead_part::chart::{At, Sheet};
+use bead_plan::weld::Transfer;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Moves with the arc on keep this close to the line on the layer, mm, and turn the torch by no more than this, rad.
@@ -16,6 +17,14 @@ pub(super) fn placed(instructions: Vec<Instruction>, sheet: &Sheet<'_>, from: Op
         Placing { sheet, at: from, start: Attitude::default(), out: Vec::with_capacity(instructions.len()) };
     instructions.into_iter().for_each(|instruction| placing.add(instruction));
     placing.out
+}
+
+/// The moves to another body.
+pub(super) fn transferred(transfer: &Transfer) -> impl Iterator<Item = Instruction> {
+    transfer.legs.iter().flat_map(|leg| {
+        let attitude = Attitude { layer: frame(leg), ..Attitude::default() };
+        [Instruction::Turn { attitude }, Instruction::Travel { to: rounded(leg.place) }]
+    })
 }
 
 struct Placing<'a> {

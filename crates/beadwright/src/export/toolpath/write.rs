@@ -13,8 +13,7 @@ use glam::DVec3;
 use uuid::Uuid;
 
 pub(super) fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
-    let chart = &beads.profile.layers.chart;
-    if !chart.is_level() {
+    if let Some(chart) = beads.profile.layers.charts().find(|chart| !chart.is_level()) {
         return Err(ExportError::NotLevel(chart.name()));
     }
     let runs = walk::runs(beads.layers, beads.profile);

@@ -89,7 +89,7 @@ impl Own {
     /// # Errors
     /// [`DialectError`] for templates that are broken, or that write less than the job asks for.
     pub fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
-        if !job.weld.chart.is_level() {
+        if !job.weld.is_level() {
             let remedy =
                 "Its templates see no orientation of the torch: choose a robot's post, or leave layers.chart out.";
             return Err(DialectError::Cannot { dialect: "a dialect of your own", what: "layers.chart", remedy });

@@ -2,6 +2,7 @@
 
 use super::{DialectError, Job};
 use crate::dialect::Section;
+use bead_part::chart::Chart;
 
 /// Something that only some dialects can write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,7 +29,7 @@ impl Extra {
             Self::LayerOffsets => job.program.layer_offsets,
             Self::Weave => job.weave.is_some(),
             Self::Tilt => job.program.tilts(),
-            Self::Chart => !job.weld.chart.is_level(),
+            Self::Chart => !job.weld.is_level(),
         }
     }
 
@@ -59,7 +60,7 @@ impl Extra {
 
 /// What cannot be written together with layers that are not level, and what to do.
 fn beside_chart(job: &Job<'_>) -> Option<(&'static str, &'static str)> {
-    let (chart, program) = (&job.weld.chart, job.program);
+    let (weld, program) = (&job.weld, job.program);
     let pairs = [
         (
             program.has_table(),
@@ -72,12 +73,12 @@ fn beside_chart(job: &Job<'_>) -> Option<(&'static str, &'static str)> {
             "An offset moves a layer along z, and not along its normal: leave it out.",
         ),
         (
-            chart.goes_around() && program.follow_wall != 0.0,
+            weld.charts.iter().any(Chart::goes_around) && program.follow_wall != 0.0,
             "layers.chart together with program.follow_wall",
             "The torch already stands along the layer's normal: set program.follow_wall = 0.",
         ),
     ];
-    pairs.into_iter().find(|(is_asked, ..)| *is_asked && !chart.is_level()).map(|(_, what, remedy)| (what, remedy))
+    pairs.into_iter().find(|(is_asked, ..)| *is_asked && !weld.is_level()).map(|(_, what, remedy)| (what, remedy))
 }
 
 /// Refuses a job that asks for more than the dialect of a section can write.

@@ -1,0 +1,203 @@
+//! Parts that are welded as several bodies, one after another (`layers.bodies`): each is planned as a part of its own, in the
+//! coordinates of its own chart, on the metal of those before it.
+
+use super::beside::{Beside, Watch};
+use super::charted::{self, Unrolled};
+use super::parts::Told;
+use super::support::Footing;
+use super::{Header, PlanError, Sink, Summary, plan_at, slabs_of, warm};
+use crate::chart::{Chart, warp};
+use crate::layer::{Extent, Layer};
+use crate::metrics::Metrics;
+use crate::model::{Mesh, PartRef};
+use crate::profile::{Body, Profile};
+use crate::slice::{Slab, Slicer};
+use crate::task::Task;
+use crate::warning::Warnings;
+use glam::DVec3;
+use planar::{Polygon, Region};
+use std::borrow::Cow;
+
+/// A body with what it takes to plan it.
+struct Own<'a> {
+    body: &'a Body,
+    profile: Cow<'a, Profile>,
+    /// In space; around an axis and along a guide with what lies below its first layer.
+    mesh: Mesh,
+}
+
+/// Plans a part as the bodies that its profile names, and hands all layers to `sink`, numbered consecutively.
+///
+/// # Errors
+/// [`PlanError`], including [`PlanError::Body`] for a body of which nothing is there, or that cannot be planned.
+pub(super) fn bodies_into<S: Sink + Send>(
+    name: &str,
+    part: PartRef,
+    profile: &Profile,
+    task: &Task,
+    sink: &mut S,
+) -> Result<Summary, PlanError<S::Error>> {
+    let PartRef::Mesh { mesh, milled: None } = part else { return Err(PlanError::ChartOfCurves) };
+    let bodies = profile.layers.bodies.iter().enumerate();
+    let owned: Vec<Own<'_>> =
+        bodies.map(|(k, body)| Own { body, profile: profile.of_body(k), mesh: body.of_mesh(mesh) }).collect();
+    let sized = owned.iter().map(|own| own.sized(task)).collect::<Result<Vec<_>, _>>()?;
+    let bounds = sized.iter().map(|(_, bounds)| *bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let (low, high) = bounds.unwrap_or_default();
+    let counts: Vec<usize> = sized.iter().map(|(count, _)| *count).collect();
+    let extent = Extent { layers: counts.iter().sum(), low, high };
+    let strategy = profile.fill.strategy.to_string();
+    sink.begin(&Header { part: name.to_owned(), profile: profile.name.clone(), strategy, extent })
+        .map_err(PlanError::Sink)?;
+    let mut row =
+        Row { profile, first: 0, body: 0, sink, metrics: Metrics::new(profile), warnings: Warnings::default() };
+    let mut told = Told::of(profile);
+    let (mut beside, mut volume) = (Beside::new(profile), Some(0.0));
+    for (k, (own, count)) in owned.iter().zip(&counts).enumerate() {
+        row.body = k;
+        let footing = own.footing(k, &owned[..k], task)?;
+        let mut watch = Watch::new(&mut row, &mut beside, own.body, &own.profile);
+        let summary = own.plan(footing, task, &mut watch)?;
+        told.add(&own.body.name, &summary);
+        beside.finish(&own.body.name, &own.mesh);
+        volume = volume.zip(summary.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
+        row.first += count;
+    }
+    let Row { mut metrics, warnings, .. } = row;
+    metrics.mesh_volume_mm3 = volume;
+    let Told { mut notes, mut forbidden } = told;
+    notes.splice(0..0, (owned.len() > 1).then(|| sentence(&owned, &counts)));
+    notes.extend(missing(mesh, volume));
+    notes.extend(beside.note());
+    forbidden.extend(beside.sentences());
+    Ok(Summary { metrics, warnings, notes, forbidden })
+}
+
+/// Which layers belong to which body.
+fn sentence(owned: &[Own<'_>], counts: &[usize]) -> String {
+    let mut first = 1;
+    let range = |(own, count): (&Own<'_>, &usize)| {
+        let text = format!("{} (layers {first} to {})", own.body.name, first + count - 1);
+        first += count;
+        text
+    };
+    let ranges: Vec<String> = owned.iter().zip(counts).map(range).collect();
+    format!("The part is welded as {} bodies, one after another: {}.", owned.len(), ranges.join(", "))
+}
+
+/// Metal that belongs to no body, or to two, counts from this part of the whole.
+const MISSING: f64 = 2e-3;
+
+fn missing(mesh: &Mesh, bodies: Option<f64>) -> Option<String> {
+    let (whole, bodies) = (mesh.volume(), bodies?);
+    let missing = whole - bodies;
+    (missing.abs() > MISSING * whole).then(|| {
+        let what = if missing > 0.0 { "belong to no body and are not welded" } else { "belong to two bodies and would be welded twice" };
+        format!("{:.1} of {:.1} cm³ of the part {what} (layers.bodies: chart and within).", missing.abs() / 1e3, whole / 1e3)
+    })
+}
+
+impl Own<'_> {
+    fn part(&self) -> PartRef<'_> {
+        PartRef::Mesh { mesh: &self.mesh, milled: None }
+    }
+
+    fn wrong<E>(&self, reason: impl Into<String>) -> PlanError<E> {
+        PlanError::Body { name: self.body.name.clone(), reason: reason.into() }
+    }
+
+    /// Errors of a body name it.
+    fn named<E>(&self, error: PlanError<E>) -> PlanError<E> {
+        match error {
+            PlanError::Cancelled(_) | PlanError::Sink(_) => error,
+            PlanError::Empty(reason) => self.wrong(reason),
+            PlanError::Chart(torn) => self.wrong(torn.to_string()),
+            other => other,
+        }
+    }
+
+    /// How many layers it has, and its lowest and highest coordinates as it is unrolled, mm.
+    fn sized<E>(&self, task: &Task) -> Result<(usize, (DVec3, DVec3)), PlanError<E>> {
+        if self.mesh.triangles.is_empty() {
+            return Err(self.wrong("nothing of the part lies above all planes of its within."));
+        }
+        let unrolled = Unrolled::of(self.part(), &self.profile, task).map_err(|error| self.named(error))?;
+        let part = unrolled.as_ref().map_or(self.part(), Unrolled::part);
+        let warmth = warm::predicted(part, &self.profile, task)?;
+        Ok((slabs_of(&warmth, part, &self.profile, task)?.len(), part.bounds()))
+    }
+
+    fn plan<S: Sink + Send>(
+        &self,
+        footing: Footing,
+        task: &Task,
+        sink: &mut S,
+    ) -> Result<Summary, PlanError<S::Error>> {
+        let (name, profile) = (&self.body.name, &*self.profile);
+        let unrolled = Unrolled::of(self.part(), profile, task).map_err(|error| self.named(error))?;
+        let part = unrolled.as_ref().map_or(self.part(), Unrolled::part);
+        let warmth = warm::predicted(part, profile, task)?;
+        let planned = plan_at(&warmth, name, part, footing, profile, task, sink);
+        let mut summary = planned.map_err(|error| self.named(error))?;
+        summary.forbidden.extend(charted::too_narrow(part.bounds().1.z, profile));
+        Ok(summary)
+    }
+
+    /// What its first layer lies on.
+    fn footing<E>(&self, number: usize, before: &[Own<'_>], task: &Task) -> Result<Footing, PlanError<E>> {
+        let chart = &self.profile.layers.chart;
+        if number == 0 || self.body.on_stock || chart.is_level() {
+            return Ok(Footing::Plate);
+        }
+        let metal = before.iter().map(|other| under(chart, &other.mesh, &self.profile, task));
+        let metal = metal.collect::<Result<Vec<_>, _>>()?;
+        let metal = metal.into_iter().fold(Region::default(), |all, part| all.union(&part));
+        Ok(Footing::Metal(metal.into_polygons()))
+    }
+}
+
+/// What of a mesh lies just under the first layer of a chart, as that layer's underside is unrolled.
+fn under<E>(chart: &Chart, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Region, PlanError<E>> {
+    let depth = profile.layers.height / 2.0;
+    let lowered = chart.lowered(depth);
+    let mesh = warp::warped(&lowered, mesh, charted::TOLERANCE, task)?;
+    let slab = Slab { z: depth, height: depth };
+    let slices = Slicer::of_slabs(&mesh, vec![slab], profile.slice_options(), task)?.on(&lowered).all(task)?;
+    let islands: Vec<Polygon> = slices.into_iter().flat_map(|slice| slice.islands).collect();
+    let (here, there) = (chart.sheet(0.0), chart.sheet(-depth / 2.0));
+    let moved = islands.iter().map(|island| island.moved(|p| here.across(p, &there))).collect();
+    Ok(Region::from_normalised(moved))
+}
+
+/// Numbers the layers of all bodies consecutively.
+struct Row<'a, S> {
+    profile: &'a Profile,
+    /// Layers of the bodies before.
+    first: usize,
+    body: usize,
+    sink: &'a mut S,
+    metrics: Metrics,
+    warnings: Warnings,
+}
+
+impl<S: Sink> Sink for Row<'_, S> {
+    type Error = S::Error;
+
+    /// The plan as a whole has already begun.
+    fn begin(&mut self, _part: &Header) -> Result<(), S::Error> {
+        Ok(())
+    }
+
+    fn layer(&mut self, mut layer: Layer) -> Result<(), S::Error> {
+        layer.index += self.first;
+        layer.body = self.body;
+        layer.warnings.iter_mut().for_each(|warning| warning.layer += self.first);
+        let sheet = self.profile.layers.sheet(&layer);
+        for warning in &layer.warnings {
+            let at = sheet.map(|sheet| sheet.at(warning.place.extend(layer.z)).place);
+            self.warnings.add_at(*warning, layer.z, at);
+        }
+        self.metrics.add(&layer);
+        self.sink.layer(layer)
+    }
+}

@@ -1,0 +1,113 @@
+//! Bodies: what a part is welded as, one after another, each with layers of its own kind (`[[layers.bodies]]`).
+
+use super::{Predict, Profile};
+use crate::chart::{Chart, Plane};
+use crate::fill::StrategyName;
+use crate::layer::Layer;
+use crate::model::Mesh;
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+
+/// One of the bodies as which a part is welded.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct Body {
+    /// What it is called in reports and messages.
+    pub name: String,
+    /// How its layers lie in space, as in `layers.chart`; level if left out. What lies below its first layer belongs to other bodies.
+    #[serde(default, skip_serializing_if = "Chart::is_level")]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
+    pub chart: Chart,
+    /// Planes such as `up=0/0/-1,through=0/0/60`: the body is what of the part lies above all of them, and above its first layer.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
+    pub within: Vec<Plane>,
+    /// Whether its first layer lies on metal that is there already and is not welded, such as a shaft; it lies on other bodies, or
+    /// on the plate, if left out. What the first body lies on is always there already.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub on_stock: bool,
+    /// What fills it; `fill.strategy` if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub strategy: Option<StrategyName>,
+    /// When the heights of its layers are predicted; `layers.predict` if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub predict: Option<Predict>,
+}
+
+/// A file of bodies.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    body: Vec<Body>,
+}
+
+/// Why a file of bodies cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {reason}. Each body is a table [[body]] with a name, and chart, within, on_stock and strategy where they are needed.")]
+pub struct BodiesError {
+    /// Number of the line, from 1.
+    line: usize,
+    /// What is wrong, without a full stop.
+    reason: String,
+}
+
+impl Body {
+    /// Reads a file of bodies: a table `[[body]]` for each, in the order in which they are welded.
+    ///
+    /// ```
+    /// use beadwright::profile::Body;
+    ///
+    /// let text = r#"
+    /// [[body]]
+    /// name = "trunk"
+    /// within = ["up=0/0/-1,through=0/0/60"]
+    ///
+    /// [[body]]
+    /// name = "arm"
+    /// chart = "plane:up=1/0/1,through=0/0/60"
+    /// "#;
+    /// let bodies = Body::read(text)?;
+    /// assert!(bodies[0].chart.is_level() && !bodies[1].chart.is_level());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`BodiesError`] with the line.
+    pub fn read(text: &str) -> Result<Vec<Self>, BodiesError> {
+        let file: File = toml::from_str(text).map_err(|error| {
+            let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
+            BodiesError { line: before.matches('\n').count() + 1, reason: error.message().to_owned() }
+        })?;
+        Ok(file.body)
+    }
+
+    /// The part of a mesh that it is. Around an axis and along a guide, what lies below its first layer is still there.
+    pub fn of_mesh(&self, mesh: &Mesh) -> Mesh {
+        let first = match &self.chart {
+            Chart::Plane(plane) if !self.chart.is_level() => Some(plane),
+            _ => None,
+        };
+        self.within.iter().chain(first).fold(mesh.clone(), |rest, plane| plane.above(&rest))
+    }
+}
+
+impl Profile {
+    /// The profile with which one body is planned and judged as if it were the whole part.
+    pub fn of_body(&self, body: usize) -> Cow<'_, Self> {
+        let Some(Body { chart, strategy, predict, .. }) = self.layers.bodies.get(body) else {
+            return Cow::Borrowed(self);
+        };
+        let mut own = self.clone();
+        own.layers.chart = chart.clone();
+        own.layers.bodies.clear();
+        own.fill.strategy = strategy.unwrap_or(own.fill.strategy);
+        own.layers.predict = predict.unwrap_or(own.layers.predict);
+        Cow::Owned(own)
+    }
+
+    /// The name of a layer's body; `None` where the part is one body.
+    pub fn body_of(&self, layer: &Layer) -> Option<&str> {
+        self.layers.bodies.get(layer.body).map(|body| body.name.as_str())
+    }
+}

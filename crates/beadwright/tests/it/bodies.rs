@@ -1,0 +1,224 @@
+//! Parts that are welded as several bodies: each as a part of its own would be, on metal that is there, with ways between them that
+//! touch nothing.
+
+use crate::common;
+
+use beadwright::layer::Layer;
+use beadwright::model::{Mesh, solid::Solid};
+use beadwright::plan::{self, Plan, PlanError};
+use beadwright::planar::{Polygon, Ring};
+use beadwright::profile::{Body, Profile};
+use beadwright::program::Instruction;
+use beadwright::task::Task;
+use beadwright::warning::WarningKind;
+use beadwright::{check, example, plan_file};
+use common::profile;
+use glam::{DMat3, DVec2, DVec3};
+use std::convert::Infallible;
+
+fn with_bodies(bodies: &str) -> Profile {
+    let mut profile = profile("cmt-al2319-kuka");
+    profile.layers.bodies = Body::read(bodies).unwrap();
+    profile
+}
+
+fn y_tube() -> (Mesh, Profile) {
+    let example = example::find("y-tube").unwrap();
+    (example.mesh(), with_bodies(&example.bodies().unwrap()))
+}
+
+fn planned(mesh: &Mesh, profile: &Profile) -> Result<Plan, PlanError<Infallible>> {
+    plan::plan("part", mesh, profile, &Task::new())
+}
+
+/// A box from its lowest to its highest corner.
+fn block(low: DVec3, high: DVec3) -> Solid {
+    let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
+    let outline = Polygon::simple(Ring::new(corners.map(|(x, y)| DVec2::new(x, y)).to_vec()));
+    Solid::loft(&outline, &[low.z, high.z], |p, _| p)
+}
+
+fn mesh_of(solids: &[Solid]) -> Mesh {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for solid in solids {
+        let first = vertices.len() as u32;
+        vertices.extend(&solid.vertices);
+        triangles.extend(solid.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+    }
+    Mesh::from_triangles(vertices, triangles).0
+}
+
+/// Beads of a layer in space.
+fn beads<'a>(layer: &'a Layer, profile: &'a Profile) -> impl Iterator<Item = DVec3> + 'a {
+    let sheet = profile.layers.sheet(layer);
+    layer.passes.iter().flat_map(|pass| &pass.points).map(move |p| sheet.map_or(*p, |sheet| sheet.at(*p).place))
+}
+
+#[test]
+fn a_forked_tube_is_welded_whole_at_any_angle() {
+    let (mesh, given) = y_tube();
+    for degrees in [0.0_f64, 37.0, 90.0, 201.0] {
+        let turn = DMat3::from_rotation_z(degrees.to_radians());
+        let (mut turned, mut profile) = (mesh.clone(), given.clone());
+        turned.vertices.iter_mut().for_each(|p| *p = turn * *p);
+        for body in &mut profile.layers.bodies {
+            let planes = |text: String| -> String {
+                let mut plane: beadwright::chart::Plane = text.parse().unwrap();
+                (plane.up, plane.origin) = (turn * plane.up, turn * plane.origin);
+                plane.to_string()
+            };
+            body.within.iter_mut().for_each(|plane| *plane = planes(plane.to_string()).parse().unwrap());
+            if !body.chart.is_level() {
+                body.chart = format!("plane:{}", planes(body.chart.to_string())).parse().unwrap();
+            }
+        }
+        let plan = planned(&turned, &profile).unwrap();
+        assert!(plan.summary.forbidden.is_empty(), "{degrees}: {:?}", plan.summary.forbidden);
+        let of = |body: usize| plan.layers.iter().filter(move |layer| layer.body == body);
+        assert!(plan.layers.is_sorted_by_key(|layer| layer.body) && (0..3).all(|body| of(body).count() > 20));
+        let metrics = &plan.summary.metrics;
+        let (laid, part) = (metrics.deposited_volume_mm3, turned.volume());
+        assert!((laid / part - 1.0).abs() < 0.02, "{degrees}: {laid} of {part}");
+        assert!((metrics.mesh_volume_mm3.unwrap() / part - 1.0).abs() < 1e-3);
+        assert!(metrics.arc_starts <= metrics.layers + 6, "{} starts", metrics.arc_starts);
+        // The arms are mirror images of one another.
+        let [right, left] = [1, 2].map(|body| of(body).map(|layer| layer.slice_area * layer.height).sum::<f64>());
+        assert!((right / left - 1.0).abs() < 0.01, "{right} {left}");
+        // Every bead lies in its body.
+        for layer in &plan.layers {
+            let body = &profile.layers.bodies[layer.body];
+            let outside = |p: &DVec3| body.within.iter().any(|plane| (*p - plane.origin).dot(plane.up) < -3.0);
+            assert_eq!(beads(layer, &profile).find(outside), None, "{degrees}: layer {}", layer.index + 1);
+        }
+    }
+}
+
+/// The torch, on its way with the arc off, stays clear of what is welded.
+#[test]
+fn ways_between_bodies_touch_nothing() {
+    let (mesh, profile) = y_tube();
+    let plan = planned(&mesh, &profile).unwrap();
+    let (mut programmer, mut laid, mut at, mut long) = (profile.programmer(), Vec::<DVec3>::new(), None, 0);
+    for layer in &plan.layers {
+        let changes = layer.index > 0 && plan.layers[layer.index - 1].body != layer.body;
+        for instruction in programmer.layer(layer).instructions {
+            let Some(to) = instruction.target() else { continue };
+            let from = at.replace(to).unwrap_or(to);
+            match instruction {
+                Instruction::Weld { .. } => laid.push(to),
+                Instruction::Travel { .. } if changes => {
+                    let steps = from.distance(to).ceil() as usize;
+                    // The last move goes down to where the arc is struck.
+                    let near = |p: DVec3| laid.iter().map(|metal| metal.distance(p)).fold(f64::INFINITY, f64::min);
+                    let close = (0..=steps).map(|k| from.lerp(to, k as f64 / steps.max(1) as f64)).map(near);
+                    let last = to.distance(beads(layer, &profile).next().unwrap()) < 0.01;
+                    assert!(last || close.fold(f64::INFINITY, f64::min) > 0.45 * profile.travel.clearance, "{from} {to}");
+                    long += 1;
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(long >= 8, "{long} travels");
+}
+
+#[test]
+fn bodies_are_read_back_from_plan_json() {
+    let (mesh, profile) = y_tube();
+    let plan = planned(&mesh, &profile).unwrap();
+    let layers = plan.layers.iter().map(|layer| plan_file::layer(layer, profile.layers.sheet(layer).as_ref()));
+    let text = plan_file::head(&plan.header, &profile) + &layers.collect::<String>() + plan_file::tail();
+    let again = plan_file::read(&text).unwrap();
+    assert_eq!(again.profile.as_ref().unwrap().layers.bodies, profile.layers.bodies);
+    for (a, b) in plan.layers.iter().zip(&again.layers) {
+        assert_eq!((a.body, a.index, a.passes.len()), (b.body, b.index, b.passes.len()));
+        let points = |layer: &Layer| layer.passes.iter().flat_map(|pass| pass.points.clone()).collect::<Vec<_>>();
+        assert!(points(a).iter().zip(points(b)).all(|(a, b)| a.distance(b) < 2e-4), "layer {}", a.index + 1);
+    }
+    let missing = text.replace("\"body\":2", "\"body\":3");
+    assert!(plan_file::read(&missing).unwrap_err().to_string().contains("layers.bodies"));
+}
+
+/// A post with a bracket on its side: the bracket stands on the post or on nothing.
+#[test]
+fn a_body_on_nothing_is_refused() {
+    let post = || block(DVec3::new(-20.0, -20.0, 0.0), DVec3::new(20.0, 20.0, 80.0));
+    let arm = |from: f64| block(DVec3::new(from, -15.0, 40.0), DVec3::new(60.0, 15.0, 70.0));
+    let bodies = |from: f64, more: &str| {
+        with_bodies(&format!(
+            "[[body]]\nname = \"post\"\nwithin = [\"up=-1/0/0,through=20/0/0\"]\n\n\
+             [[body]]\nname = \"arm\"\nchart = \"plane:up=x,through={from}/0/0\"\n{more}"
+        ))
+    };
+    let plan = |from: f64, more: &str| planned(&mesh_of(&[post(), arm(from)]), &bodies(from, more)).unwrap();
+    assert!(plan(20.0, "").summary.forbidden.is_empty());
+    let hanging = plan(30.0, "");
+    assert!(hanging.summary.warnings.summaries().any(|w| w.kind == WarningKind::InTheAir));
+    assert!(hanging.summary.forbidden[0].contains("nothing"), "{:?}", hanging.summary.forbidden);
+    assert!(plan(30.0, "on_stock = true\n").summary.forbidden.is_empty());
+}
+
+#[test]
+fn a_torch_that_would_hit_a_finished_body_is_found() {
+    let (low, high) = (DVec3::new(-50.0, -20.0, 0.0), DVec3::new(50.0, 20.0, 20.0));
+    let tower = |x: f64| block(DVec3::new(x - 15.0, -15.0, 20.0), DVec3::new(x + 15.0, 15.0, 120.0));
+    let bodies = |gap: f64| {
+        with_bodies(&format!(
+            "[[body]]\nname = \"foot\"\nwithin = [\"up=-z,through=0/0/20\"]\n\n\
+             [[body]]\nname = \"first\"\nchart = \"plane:through=0/0/20\"\nwithin = [\"up=-x,through={gap}/0/0\"]\n\n\
+             [[body]]\nname = \"second\"\nchart = \"plane:through=0/0/20\"\nwithin = [\"up=x,through={gap}/0/0\"]\n"
+        ))
+    };
+    let found = |apart: f64| {
+        let mesh = mesh_of(&[block(low.with_x(-300.0), high.with_x(300.0)), tower(-apart), tower(apart)]);
+        planned(&mesh, &bodies(0.0)).unwrap().summary.forbidden
+    };
+    let close = found(25.0);
+    assert!(close.iter().any(|text| text.starts_with("The torch would hit first while it welds second")), "{close:?}");
+    assert_eq!(found(200.0), Vec::<String>::new());
+}
+
+#[test]
+fn what_belongs_to_no_body_or_to_two_is_said() {
+    let (mesh, mut profile) = y_tube();
+    profile.layers.bodies.pop();
+    let notes = planned(&mesh, &profile).unwrap().summary.notes;
+    assert!(notes.iter().any(|note| note.contains("belong to no body")), "{notes:?}");
+    profile.layers.bodies[1].within.clear();
+    let (_, whole) = y_tube();
+    profile.layers.bodies.push(whole.layers.bodies[2].clone());
+    let notes = planned(&mesh, &profile).unwrap().summary.notes;
+    assert!(notes.iter().any(|note| note.contains("belong to two bodies")), "{notes:?}");
+}
+
+#[test]
+fn errors_name_the_body() {
+    let (mesh, mut profile) = y_tube();
+    profile.layers.bodies[1].within.push("up=z,through=0/0/900".parse().unwrap());
+    let error = planned(&mesh, &profile).unwrap_err().to_string();
+    assert!(error.starts_with("body right arm (layers.bodies): nothing of the part"), "{error}");
+    let text = "[[body]]\nname = \"a\"\n\n[[body]]\nchart = \"plane\"\n";
+    let error = Body::read(text).unwrap_err().to_string();
+    assert!(error.contains("name") && error.contains('4'), "{error}");
+    let error = Body::read("[[body]]\nname = \"a\"\nwithin = [\"cylinder:radius=3\"]\n").unwrap_err().to_string();
+    assert!(error.contains("is no plane"), "{error}");
+}
+
+/// Checks look at each body by itself, as they look at a part.
+#[test]
+fn the_checks_of_a_plan_of_bodies_are_those_of_its_bodies() {
+    let (mesh, profile) = y_tube();
+    let plan = planned(&mesh, &profile).unwrap();
+    let settings = plan::deposit_settings(&profile);
+    let whole = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
+    assert!(whole.iter().all(|f| !["layers", "overhang", "air", "crossing"].contains(&f.kind)), "{whole:?}");
+    let mut each = Vec::new();
+    for (k, body) in profile.layers.bodies.iter().enumerate() {
+        let own = profile.of_body(k);
+        let layers: Vec<&Layer> = plan.layers.iter().filter(|layer| layer.body == k).collect();
+        each.extend(check::check(&layers, &own, settings, &Task::new()).unwrap());
+        assert_eq!(profile.body_of(layers[0]), Some(body.name.as_str()));
+    }
+    let texts = |found: &[beadwright::Finding]| found.iter().map(|f| f.text.clone()).collect::<Vec<_>>();
+    assert_eq!(texts(&whole), texts(&each));
+}
