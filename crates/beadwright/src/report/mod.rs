@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | [`encode`] | the layers in compact form |
 //! | `tables` | totals, process, files and warnings as HTML |
+//! | `lie` | how layers lie in space |
 //! | [`rows`] | totals as people read them |
 //! | `words` | what the terms of the figures mean |
 //! | [`svg`] | one layer as a standalone picture |
@@ -14,7 +15,7 @@
 //! | [`reach`] | joint angles and margins over a program |
 //! | [`steps`] | the steps of the hybrid and of the loop as pictures |
 //! | `page.html`, `page.css` | the page |
-//! | `layers.js`, `layout.js`, `heat.js`, `colour.js` | reading layers, those of the page, height fields, what beads are coloured by |
+//! | `layers.js`, `layout.js`, `lie.js`, `heat.js`, `colour.js` | reading layers, those of the page, where they lie, height fields, what beads are coloured by |
 //! | `picture.js`, `pick.js`, `timeline.js`, `page.js` | a layer from above, the pass pointed out, the build in time, the controls |
 //! | `camera.js`, `steer.js`, `strands.js`, `shaders.js`, `scene.js`, `pace.js` | beads in 3-D (WebGL 2): camera and its handling, points, programs, buffers, how much is drawn |
 //! | `solid.js`, `twins.js` | the part in 3-D on the report; strategies side by side on other pages |
@@ -22,6 +23,7 @@
 pub mod angles;
 pub mod bead_window;
 pub mod encode;
+mod lie;
 pub mod overhang;
 pub mod plot;
 pub mod reach;
@@ -67,6 +69,8 @@ pub struct Report {
     header: Header,
     profile: Profile,
     layers: Vec<String>,
+    /// How each layer lies in space; none where all are level.
+    lies: Vec<serde_json::Value>,
     maps: Vec<String>,
     /// For each layer: temperatures where its passes begin, °C, and the seconds that the torch waits.
     warmth: Vec<(Vec<f64>, f64)>,
@@ -88,6 +92,7 @@ impl Report {
             header: header.clone(),
             profile: profile.clone(),
             layers: Vec::new(),
+            lies: Vec::new(),
             maps: Vec::new(),
             warmth: Vec::new(),
             times: Vec::new(),
@@ -106,6 +111,9 @@ impl Report {
             self.middle = layer.clone();
         }
         self.layers.push(encode::layer(layer, &self.profile.process, judgement.map(|j| &j.figures)));
+        if !self.profile.layers.are_level() {
+            self.lies.push(lie::lie(self.profile.layers.chart_of(layer), layer));
+        }
         let waits = layer.passes.iter().map(|pass| pass.wait).sum();
         self.warmth.push((layer.temperatures.iter().map(|t| t.start).collect(), waits));
         self.measure(layer);
@@ -156,6 +164,7 @@ impl Report {
                     include_str!("inflate.js"),
                     include_str!("layers.js"),
                     include_str!("layout.js"),
+                    include_str!("lie.js"),
                     include_str!("heat.js"),
                     include_str!("colour.js"),
                     include_str!("picture.js"),
@@ -184,9 +193,10 @@ impl Report {
         let (layers, maps) = (list(&self.layers), list(&self.maps));
         let times: Vec<[f64; 3]> = self.times.iter().map(|parts| parts.map(|s| (s * 10.0).round() / 10.0)).collect();
         let (times, warmth) = (json!(times), self.warmth());
+        let lies = json!(self.lies);
         let ranges = json!({ "width": self.widths.ends(), "speed": self.speeds.ends() });
         format!(
-            "{{\"bead\":{bead},\"ranges\":{ranges},\"times\":{times},\"warmth\":{warmth},\"layers\":[{layers}],\"maps\":[{maps}]}}"
+            "{{\"bead\":{bead},\"ranges\":{ranges},\"times\":{times},\"warmth\":{warmth},\"lies\":{lies},\"layers\":[{layers}],\"maps\":[{maps}]}}"
         )
     }
 

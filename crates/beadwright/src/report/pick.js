@@ -71,7 +71,7 @@ function goTo(layer, x, y) {
   view.x = view.width / 2 - view.scale * x;
   view.y = view.height / 2 + view.scale * y;
   view.fitted = false;
-  Object.assign(space.camera, { target: [x, y, heads[layer].z], distance: 2.5 * room, fitted: false });
+  Object.assign(space.camera, { target: inSpace(layer, x, y, heads[layer].height / 2), distance: 2.5 * room, fitted: false });
   $("viewer").scrollIntoView({ block: "start" });
   show(layer);
 }

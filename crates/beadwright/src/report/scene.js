@@ -1,12 +1,13 @@
 // Beads in space: buffers of layers, drawn by the programs of shaders.js. Knows nothing of the page.
 
-function newScene(canvas) {
+// `inSpace`: layers are not level.
+function newScene(canvas, inSpace = false) {
   // Where the processor draws, smooth edges cost more than they show.
   const gl = canvas.getContext("webgl2", { alpha: false, preserveDrawingBuffer: true, antialias: !drawnByProcessor() });
   if (!gl) return null;
   const scene = {
     gl, layers: [], most: 0, meshes: [[ROUND, true], [PLAIN, true], [PLAIN, false]].map(([profile, closed]) => newMesh(gl, profile, closed)),
-    lit: newProgram(gl, BEAD_SHADER, LIT_SHADER), pick: newProgram(gl, BEAD_SHADER, PICK_SHADER),
+    lit: newProgram(gl, beadShader(inSpace), LIT_SHADER), pick: newProgram(gl, beadShader(inSpace), PICK_SHADER),
     line: newProgram(gl, LINE_SHADER, PLAIN_SHADER), lines: gl.createBuffer(), target: newTarget(gl),
   };
   gl.enable(gl.DEPTH_TEST);

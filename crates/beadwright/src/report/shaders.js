@@ -1,10 +1,12 @@
 // The programs of the graphics card. A bead is spanned from one point to the next, mitred with its neighbours. The points
-// are read from a texture, two texels each: drawn as instances they would be slow without a graphics card.
+// are read from a texture, two texels each, three of layers that are not level: drawn as instances they would be slow without a
+// graphics card.
 
-const BEAD_SHADER = `#version 300 es
+const beadShader = inSpace => `#version 300 es
 precision highp float;
 precision highp int;
-uniform highp sampler2D points;        // x, y, time in the layer, width; speed, temperature, kind + 4 where a piece begins, pass
+uniform highp sampler2D points;        // x, y, time in the layer, width; speed, temperature, kind + 4 where a piece begins, pass; z, normal
+const int texels = ${inSpace ? 3 : 2};
 uniform vec4 profile[7];               // across and up, parts of width and height; facing across and up
 uniform int corners;                   // of the profile
 uniform mat4 camera;
@@ -23,8 +25,12 @@ flat out float secondsOut;
 
 vec4 texel(int i) { return texelFetch(points, ivec2(i % ${ACROSS}, i / ${ACROSS}), 0); }
 
-vec2 along(vec2 from, vec2 to, vec2 otherwise) {
-  vec2 way = to - from;
+vec3 place(int i) { return ${inSpace ? "vec3(texel(i).xy, texel(i + 2).x)" : "vec3(texel(i).xy, layer.x)"}; }
+
+vec3 facing(int i) { return ${inSpace ? "texel(i + 2).yzw" : "vec3(0.0, 0.0, 1.0)"}; }
+
+vec3 along(vec3 from, vec3 to, vec3 otherwise) {
+  vec3 way = to - from;
   float far = length(way);
   return far > 1e-4 ? way / far : otherwise;
 }
@@ -45,28 +51,31 @@ vec3 painted(vec4 here, vec4 more, int kind) {
 }
 
 void main() {
-  int piece = gl_VertexID / (2 * corners), corner = gl_VertexID % corners, first = 2 * piece;
+  int piece = gl_VertexID / (2 * corners), corner = gl_VertexID % corners, first = texels * piece;
   bool end = (gl_VertexID / corners) % 2 == 1;
-  vec4 here = texel(first + 2), more = texel(first + 3), there = texel(first + 4), shape = profile[corner];
+  int own = first + texels, next = own + texels;
+  vec4 here = texel(own), more = texel(own + 1), there = texel(next), shape = profile[corner];
   int tags = int(more.z + 0.5);
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   if (tags < 4 || here.z >= span.x) return;
   bool cut = there.z > span.x;
-  vec2 to = cut ? mix(here.xy, there.xy, (span.x - here.z) / (there.z - here.z)) : there.xy;
-  vec2 way = along(here.xy, there.xy, vec2(1.0, 0.0));
-  vec2 other = !end ? along(texel(first).xy, here.xy, way) : cut ? way : along(there.xy, texel(first + 6).xy, way);
-  vec2 sum = way + other;
-  vec2 tangent = dot(sum, sum) > 0.05 ? normalize(sum) : way;
+  float part = cut ? (span.x - here.z) / (there.z - here.z) : 1.0;
+  vec3 from = place(own), last = place(next), to = mix(from, last, part);
+  vec3 way = along(from, last, vec3(1.0, 0.0, 0.0));
+  vec3 other = !end ? along(place(first), from, way) : cut ? way : along(last, place(next + texels), way);
+  vec3 sum = way + other;
+  vec3 tangent = dot(sum, sum) > 0.05 ? normalize(sum) : way;
   float mitre = 1.0 / max(dot(tangent, way), 0.5);
-  vec2 side = vec2(-tangent.y, tangent.x);
-  vec2 at = (end ? to : here.xy) + side * shape.x * here.w * mitre;
+  vec3 thick = end ? mix(facing(own), facing(next), part) : facing(own), upward = normalize(thick);
+  vec3 side = normalize(cross(upward, tangent));
+  vec3 at = (end ? to : from) + side * shape.x * here.w * mitre - thick * layer.y * (1.0 - shape.y);
   up = shape.y;
-  normal = vec3(side * shape.z, shape.w);
+  normal = side * shape.z + upward * shape.w;
   colour = painted(here, more, tags - 4);
   passOut = uint(more.w + 0.5);
   secondsOut = here.z;
   if (picked >= 0 && uint(picked) == passOut) colour = mix(colour, vec3(1.0), 0.65);
-  gl_Position = camera * vec4(at, layer.x - layer.y * (1.0 - shape.y), 1.0);
+  gl_Position = camera * vec4(at, 1.0);
 }`;
 
 // Light from behind the eye's left shoulder; grooves between beads are darker, but not where they are finer than pixels.

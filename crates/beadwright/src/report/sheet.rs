@@ -117,6 +117,7 @@ impl Sheet {
     fn scripts(&self) -> String {
         let deep = [
             include_str!("layers.js"),
+            include_str!("lie.js"),
             include_str!("camera.js"),
             include_str!("steer.js"),
             include_str!("strands.js"),

@@ -7,8 +7,17 @@ const QUICK = 12, BATCH = 16, COARSE = 0.5;
 
 const solidShown = () => space.scene && $("stages").dataset.view !== "layer";
 
+// How a layer lies in space; nothing where all are level.
+const lieOf = index => data.lies[index];
+
+// A place on a layer in space, `up` mm above its middle.
+const inSpace = (index, x, y, up) => lieOf(index) ? placed(lieOf(index), x, y, up).at : [x, y, heads[index].z - heads[index].height / 2 + up];
+
+const boxInSpace = data.lies.length ? boxOf(heads, data.lies) : null;
+
 // The part, from its lowest to its highest corner, mm.
 function solidBox() {
+  if (boxInSpace) return boxInSpace;
   const room = data.bead.width / 2, { left, right, low, high } = partBox, laid = heads.filter(head => head.points);
   const bottom = laid.reduce((z, head) => Math.min(z, head.z - head.height), Infinity);
   return [[left - room, low - room, bottom], [right + room, high + room, laid.reduce((z, head) => Math.max(z, head.z), bottom)]];
@@ -36,7 +45,7 @@ async function readSolid() {
 }
 
 function addSolid(index, layer) {
-  const { z: top, height } = heads[index], { begins: start, lasts, seconds } = layer, found = strands(layer);
+  const { z: top, height } = heads[index], { begins: start, lasts, seconds } = layer, found = strands(layer, lieOf(index));
   space.pieces += found.count;
   space.outside += found.outside;
   addLayer(space.scene, index, found, { top, height, start, seconds, pace: seconds > 0 ? lasts / seconds : 0 });
@@ -60,10 +69,12 @@ function solidLines() {
   for (let y = y0; y <= y1 + step / 2; y += step) grid.push(x0, y, low[2], x1, y, low[2]);
   const lines = [{ points: grid, colour: channels(colours.line) }];
   if (!shown.travels || !shown.layer) return lines;
-  const { z, height } = heads[shown.index], passes = shown.layer.passes.filter(pass => pass.xy.length && pass.start <= shown.until), moves = [];
+  const { height } = heads[shown.index], passes = shown.layer.passes.filter(pass => pass.xy.length && pass.start <= shown.until), moves = [];
   passes.slice(1).forEach((pass, i) => {
-    const from = passes[i].xy;
-    moves.push(from.at(-2), from.at(-1), z + 0.3 * height, pass.xy[0], pass.xy[1], z + 0.3 * height);
+    const from = [passes[i].xy.at(-2), passes[i].xy.at(-1)], to = [pass.xy[0], pass.xy[1]];
+    const place = t => inSpace(shown.index, from[0] + t * (to[0] - from[0]), from[1] + t * (to[1] - from[1]), 0.8 * height);
+    let before = 0;
+    for (const t of divisions(lieOf(shown.index), from, to)) { moves.push(...place(before), ...place(t)); before = t; }
   });
   return [...lines, { points: moves, colour: channels(colours.text) }];
 }
@@ -73,7 +84,7 @@ function lookNow(much) {
   const { camera } = space, [low, high] = solidBox(), { right, back } = axesOf(camera), choice = CHOICES[shown.by];
   const reach = 1.5 * Math.hypot(...low.map((v, i) => high[i] - v)) + Math.hypot(...camera.target.map((v, i) => v - (low[i] + high[i]) / 2));
   const light = [0, 1, 2].map(i => 0.78 * back[i] - 0.38 * right[i] + (i > 1 ? 0.4 : 0));
-  const pixels = (high[2] - low[2]) / heads.length * much.stride * solid.height / (2 * FIELD * camera.distance);
+  const pixels = (boxInSpace ? heads[shown.index].height : (high[2] - low[2]) / heads.length) * much.stride * solid.height / (2 * FIELD * camera.distance);
   space.matrix = matrixOf(camera, solid.width / solid.height, reach);
   return {
     ...much, matrix: space.matrix, light, fine: Math.min(Math.max((pixels - 1.5) / 4, 0), 1), lines: solidLines(), paper: channels(colours.stage), highest: shown.index, until: shown.until, picked: shown.picked,
@@ -115,7 +126,7 @@ function stirSolid() {
 const hurried = () => space.moving && space.hurried;
 
 function placeMark() {
-  const { mark } = shown, at = mark && projected(space.matrix, [mark.x, mark.y, heads[mark.layer].z], solid.clientWidth, solid.clientHeight);
+  const { mark } = shown, at = mark && projected(space.matrix, inSpace(mark.layer, mark.x, mark.y, heads[mark.layer].height / 2), solid.clientWidth, solid.clientHeight);
   $("solid-mark").hidden = !at;
   if (at) $("solid-mark").style.transform = `translate(${at[0]}px, ${at[1]}px)`;
 }
@@ -150,7 +161,7 @@ function followSolid() {
 
 // False where the browser has no WebGL 2.
 function startSolid() {
-  space.scene = newScene(solid);
+  space.scene = newScene(solid, data.lies.length > 0);
   if (!space.scene) return false;
   solid.addEventListener("webglcontextlost", () => { space.scene = null; withoutSolid("The graphics card gave up on the 3-D view. Load the page again to see it."); });
   noteSolid("");

@@ -1,7 +1,7 @@
-// The points of a layer as the graphics card takes them: eight numbers each (shaders.js names them) in a texture of two
-// texels a point, ACROSS texels in a row; all passes one after another.
+// The points of a layer as the graphics card takes them: eight numbers each (shaders.js names them), twelve of layers that are
+// not level, in a texture of four numbers a texel, ACROSS texels in a row; all passes one after another.
 
-const RECORD = 8, ACROSS = 512;
+const RECORD = 8, RECORD_IN_SPACE = 12, ACROSS = 512;
 // Points are left out as long as a bead moves by no more than this part of its width.
 const THINNING = 0.04;
 
@@ -51,24 +51,38 @@ function near(ring, x, y, reach) {
   return false;
 }
 
+// The points of a pass that are drawn, as [index, x, y, time]: pieces around an axis are divided.
+function spreadOf({ pass, list }, lie) {
+  const point = i => [i, pass.xy[2 * i], pass.xy[2 * i + 1], pass.times[i]], points = [point(list[0])];
+  for (let k = 1; k < list.length; k++) {
+    const from = point(list[k - 1]), to = point(list[k]), part = (t, axis) => from[axis] + t * (to[axis] - from[axis]);
+    for (const t of divisions(lie, from.slice(1, 3), to.slice(1, 3))) points.push(t < 1 ? [from[0], part(t, 1), part(t, 2), part(t, 3)] : to);
+  }
+  return points;
+}
+
 // The passes with the points that they need, those along the outline first. Every pass has one more point at each end,
 // so that the shader knows where its neighbours lie: the joint of a closed pass is like any other, an open end repeats itself.
-function strands(layer) {
-  const rings = layer.islands.flat(), all = layer.passes.map((pass, index) => ({ pass, index, list: needed(pass) })).filter(({ list }) => list.length > 1);
+// `lie` says how a layer lies in space that is not level.
+function strands(layer, lie) {
+  const rings = layer.islands.flat(), all = layer.passes.map((pass, index) => ({ pass, index, list: needed(pass) })).filter(({ list }) => list.length > 1).map(strand => ({ ...strand, points: spreadOf(strand, lie) }));
   const outside = all.filter(({ pass }) => outer(pass, rings)), inside = all.filter(strand => !outside.includes(strand));
-  const records = list => list.reduce((sum, strand) => sum + strand.list.length + 2, 0), count = records(all);
+  const records = list => list.reduce((sum, strand) => sum + strand.points.length + 2, 0), count = records(all);
   // Whole rows.
-  const numbers = new Float32Array(Math.ceil(count * RECORD / (4 * ACROSS)) * 4 * ACROSS);
+  const record = lie ? RECORD_IN_SPACE : RECORD, numbers = new Float32Array(Math.ceil(count * record / (4 * ACROSS)) * 4 * ACROSS);
   let at = 0;
-  for (const { pass, index, list } of [...outside, ...inside]) {
-    const n = list.length, put = (i, begins) => {
-      const [width, speed] = pass.along[Math.min(i, pass.along.length - 1)], tags = pass.kind + (begins ? 4 : 0);
-      const record = [pass.xy[2 * i], pass.xy[2 * i + 1], pass.times[i], width, speed, pass.celsius ?? 0, tags, index];
-      for (const number of record) numbers[at++] = number;
+  for (const { pass, index, points } of [...outside, ...inside]) {
+    const n = points.length, put = ([i, x, y, time], begins) => {
+      const [width, speed] = pass.along[Math.min(i, pass.along.length - 1)], tags = pass.kind + (begins ? 4 : 0), more = [speed, pass.celsius ?? 0, tags, index];
+      if (lie) {
+        const top = placed(lie, x, y, lie.top), [px, py, pz] = top.at;
+        numbers.set([px, py, time, width, ...more, pz, ...top.normal], at);
+      } else numbers.set([x, y, time, width, ...more], at);
+      at += record;
     };
-    put(pass.closed ? list[n - 2] : list[0], false);
-    list.forEach((i, k) => put(i, k + 1 < n));
-    put(pass.closed ? list[1] : list[n - 1], false);
+    put(pass.closed ? points[n - 2] : points[0], false);
+    points.forEach((point, k) => put(point, k + 1 < n));
+    put(pass.closed ? points[1] : points[n - 1], false);
   }
   return { numbers, count, outside: records(outside) };
 }
