@@ -33,6 +33,7 @@ mod serve;
 mod several;
 mod simulate;
 mod studio;
+mod surface;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
@@ -63,6 +64,8 @@ enum Command {
     /// Print the curve to which the layers of a bent part are square, for plan --chart: found in a bent tube or bar that stands on one
     /// end, or read from a curve (IGES, or a CSV table with the columns x, y, z in mm).
     Guide(guide::Arguments),
+    /// Write the surface of a model as the surface over which layers lie (a file for `plan --bodies`).
+    Surface(surface::Arguments),
     /// Plan a model with every strategy, and judge them side by side.
     Compare(compare::Arguments),
     /// Plan many models, with many profiles, strategies and values: one table.
@@ -111,6 +114,7 @@ fn main() -> ExitCode {
         Command::Plan(arguments) => parts::run(&arguments),
         Command::Preform(arguments) => preform::run(&arguments),
         Command::Guide(arguments) => guide::run(&arguments),
+        Command::Surface(arguments) => surface::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

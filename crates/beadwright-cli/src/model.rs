@@ -150,6 +150,18 @@ impl Model {
         }
     }
 
+    /// A solid with an existing part on which it is welded: both placed as one.
+    pub(crate) fn placed_onto(&self, base: &Path, profile: &Profile, task: &Task) -> anyhow::Result<(Import, Mesh)> {
+        anyhow::ensure!(!self.placing.turns(), "--onto: the part lies as its base does, so it is not turned by itself (--turn turns both)");
+        let read = if self.placing.accept_damaged { model::import_damaged } else { model::import };
+        let import = |path: &Path| {
+            let bytes = convert::solid(path, file::model(path)?)?;
+            read(&bytes, task).with_context(|| path.display().to_string())
+        };
+        let placed = self.placing.placement().solid_onto(import(&self.model)?, import(base)?, profile.bead.width);
+        placed.with_context(|| self.model.display().to_string())
+    }
+
     /// The part's name: the file name without its extension.
     pub(crate) fn part(&self) -> String {
         file::stem(&self.model).unwrap_or_else(|| "part".to_owned())

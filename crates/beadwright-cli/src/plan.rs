@@ -57,6 +57,10 @@ pub(crate) struct Arguments {
     /// Weld the part as several bodies, one after another, each with layers of its own kind: a file with a table [[body]] for each.
     #[arg(long, value_name = "FILE", conflicts_with = "chart")]
     bodies: Option<PathBuf>,
+    /// Weld on an existing part, which is not welded itself: a model in the coordinates of the part's file. It is placed with the part,
+    /// stands on the table in its place, and the first layers must lie on it.
+    #[arg(long, value_name = "MODEL", conflicts_with_all = ["with", "preform", "from_z", "lay_flat", "orient"])]
+    onto: Option<PathBuf>,
     /// Make the strategy hybrid follow the paper to the letter.
     #[arg(long)]
     literal: bool,
@@ -170,6 +174,10 @@ impl Arguments {
                 || self.several.with.is_empty(),
             "--with: a guide (layers.chart) and bodies (layers.bodies) belong to one part"
         );
+        if let Some(base) = &self.onto {
+            let (import, base) = self.model.placed_onto(base, profile, task)?;
+            return Ok(Build { whole: Part::Mesh(import), base: Some(base), places: Vec::new(), lowest_first: Vec::new() });
+        }
         self.several.stand(&self.model, |model| {
             let use_as = if self.preform { model::Use::Preform } else { model::Use::AsDrawn };
             let part = model.part_placed(profile, use_as, self.height, task)?;
@@ -232,16 +240,19 @@ pub(crate) fn prepare(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let profile = arguments.profile(&arguments.profile)?;
+    let mut profile = arguments.profile(&arguments.profile)?;
     let part = arguments.name();
-    let programs = arguments.programs(&arguments.profile, &profile, &part, 0.0)?;
+    // A fault of the profile is said before anything is read.
+    arguments.programs(&arguments.profile, &profile, &part, 0.0)?;
 
     let (task, bar) = progress::task()?;
-    let Build { whole: model, places, lowest_first } = arguments.build(&profile, &task)?;
+    let Build { whole: model, base, places, lowest_first } = arguments.build(&profile, &task)?;
+    profile.layers.base = base.as_ref().map(|base| [base.bounds().0, base.bounds().1].map(|corner| corner.to_array()));
     if let Part::Mesh(import) = &model {
         say_size(&import.mesh, &profile)?;
     }
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
+    let programs = arguments.programs(&arguments.profile, &profile, &part, 0.0)?;
     let settings = deposit_settings(arguments.grid, &profile, model.bounds())?;
     let selection = Selection {
         layers: arguments.layers.clone().flatten(),
@@ -252,7 +263,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let files = Files::new(&arguments.output, programs, &profile)?.judged(judge);
     let mut files = Files { selection: selection.clone(), pictures: &arguments.picture, ..files };
     let planned = match arguments.several.order {
-        Order::Layers => plan::plan_into(&part, &model, &profile, &task, &mut files),
+        Order::Layers => {
+            let solid = beadwright::model::PartRef::from(&model);
+            let solid = base.as_ref().map_or(solid, |base| solid.onto(base));
+            plan::plan_into(&part, solid, &profile, &task, &mut files)
+        }
         Order::Parts => {
             let solids: Vec<_> = lowest_first.iter().map(|(name, import)| (name.clone(), import.into())).collect();
             plan::parts_into(&part, &solids, &profile, &task, &mut files)

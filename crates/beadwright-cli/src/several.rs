@@ -2,7 +2,7 @@
 
 use crate::model;
 use beadwright::model::together::{Arrangement, Place, arrange, together};
-use beadwright::model::{Import, Part};
+use beadwright::model::{Import, Mesh, Part};
 use std::path::Path;
 
 #[derive(clap::Args)]
@@ -75,7 +75,7 @@ impl Several {
     ) -> anyhow::Result<Build> {
         let whole = place(first)?;
         if self.with.is_empty() {
-            return Ok(Build { whole, places: Vec::new(), lowest_first: Vec::new() });
+            return Ok(Build { whole, base: None, places: Vec::new(), lowest_first: Vec::new() });
         }
         let mut parts = vec![(first.part(), solid(whole, &first.model)?)];
         for with in &self.with {
@@ -85,7 +85,7 @@ impl Several {
         let (mut solids, places) = arrange(parts, self.arrangement())?;
         let (whole, _) = together(solids.clone(), Arrangement::AsTheyAre)?;
         solids.sort_by(|(_, a), (_, b)| a.mesh.size().z.total_cmp(&b.mesh.size().z));
-        Ok(Build { whole: Part::Mesh(whole), places, lowest_first: solids })
+        Ok(Build { whole: Part::Mesh(whole), base: None, places, lowest_first: solids })
     }
 
     /// The name of the profile that is a part's own.
@@ -99,6 +99,8 @@ impl Several {
 pub(crate) struct Build {
     /// As one part.
     pub(crate) whole: Part,
+    /// An existing part on which it is welded.
+    pub(crate) base: Option<Mesh>,
     /// Where each of several parts is placed.
     pub(crate) places: Vec<Place>,
     /// Each of several parts by its name and by itself, the lowest first.

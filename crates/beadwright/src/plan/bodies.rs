@@ -37,8 +37,10 @@ pub(super) fn bodies_into<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let PartRef::Mesh { mesh, milled: None } = part else { return Err(PlanError::ChartOfCurves) };
-    let bodies = profile.layers.bodies.iter().enumerate();
+    let PartRef::Mesh { mesh, milled: None, onto } = part else { return Err(PlanError::ChartOfCurves) };
+    let whole = [Body::of(name, profile.layers.chart.clone())];
+    let bodies = if profile.layers.bodies.is_empty() { &whole[..] } else { &profile.layers.bodies };
+    let bodies = bodies.iter().enumerate();
     let owned: Vec<Own<'_>> =
         bodies.map(|(k, body)| Own { body, profile: profile.of_body(k), mesh: body.of_mesh(mesh) }).collect();
     let sized = owned.iter().map(|own| own.sized(task)).collect::<Result<Vec<_>, _>>()?;
@@ -53,9 +55,13 @@ pub(super) fn bodies_into<S: Sink + Send>(
         Row { profile, first: 0, body: 0, sink, metrics: Metrics::new(profile), warnings: Warnings::default() };
     let mut told = Told::of(profile);
     let (mut beside, mut volume) = (Beside::new(profile), Some(0.0));
+    if let Some(base) = onto {
+        beside.finish(BASE, base);
+    }
     for (k, (own, count)) in owned.iter().zip(&counts).enumerate() {
         row.body = k;
-        let footing = own.footing(k, &owned[..k], task)?;
+        let under = owned[..k].iter().map(|other| &other.mesh).chain(onto);
+        let footing = if k == 0 && onto.is_none() { Footing::Plate } else { own.footing(under, task)? };
         let mut watch = Watch::new(&mut row, &mut beside, own.body, &own.profile);
         let summary = own.plan(footing, task, &mut watch)?;
         told.add(&own.body.name, &summary);
@@ -67,7 +73,7 @@ pub(super) fn bodies_into<S: Sink + Send>(
     metrics.mesh_volume_mm3 = volume;
     let Told { mut notes, mut forbidden } = told;
     notes.splice(0..0, (owned.len() > 1).then(|| sentence(&owned, &counts)));
-    notes.extend(missing(mesh, volume));
+    notes.extend(missing(mesh, volume).filter(|_| !profile.layers.bodies.is_empty()));
     notes.extend(beside.note());
     forbidden.extend(beside.sentences());
     Ok(Summary { metrics, warnings, notes, forbidden })
@@ -85,6 +91,9 @@ fn sentence(owned: &[Own<'_>], counts: &[usize]) -> String {
     format!("The part is welded as {} bodies, one after another: {}.", owned.len(), ranges.join(", "))
 }
 
+/// What messages call an existing part.
+const BASE: &str = "the part that is there already";
+
 /// Metal that belongs to no body, or to two, counts from this part of the whole.
 const MISSING: f64 = 2e-3;
 
@@ -99,7 +108,7 @@ fn missing(mesh: &Mesh, bodies: Option<f64>) -> Option<String> {
 
 impl Own<'_> {
     fn part(&self) -> PartRef<'_> {
-        PartRef::Mesh { mesh: &self.mesh, milled: None }
+        PartRef::Mesh { mesh: &self.mesh, milled: None, onto: None }
     }
 
     fn wrong<E>(&self, reason: impl Into<String>) -> PlanError<E> {
@@ -140,16 +149,23 @@ impl Own<'_> {
         let planned = plan_at(&warmth, name, part, footing, profile, task, sink);
         let mut summary = planned.map_err(|error| self.named(error))?;
         summary.forbidden.extend(charted::too_narrow(part.bounds().1.z, profile));
+        if let PartRef::Mesh { mesh, .. } = part {
+            summary.notes.extend(charted::stretched(mesh, &profile.layers.chart));
+        }
         Ok(summary)
     }
 
     /// What its first layer lies on.
-    fn footing<E>(&self, number: usize, before: &[Own<'_>], task: &Task) -> Result<Footing, PlanError<E>> {
+    fn footing<'m, E>(
+        &self,
+        below: impl Iterator<Item = &'m Mesh>,
+        task: &Task,
+    ) -> Result<Footing, PlanError<E>> {
         let chart = &self.profile.layers.chart;
-        if number == 0 || self.body.on_stock || chart.is_level() {
+        if self.body.on_stock || chart.is_level() {
             return Ok(Footing::Plate);
         }
-        let metal = before.iter().map(|other| under(chart, &other.mesh, &self.profile, task));
+        let metal = below.map(|mesh| under(chart, mesh, &self.profile, task));
         let metal = metal.collect::<Result<Vec<_>, _>>()?;
         let metal = metal.into_iter().fold(Region::default(), |all, part| all.union(&part));
         Ok(Footing::Metal(metal.into_polygons()))

@@ -38,7 +38,7 @@ pub(super) fn notes(placed: &Mesh, unrolled: &Mesh, profile: &Profile) -> Vec<St
          after it ends."
             .to_owned()
     });
-    [aside(placed, unrolled, chart), below(placed, unrolled, chart), inside].into_iter().flatten().collect()
+    [aside(placed, unrolled, chart), below(placed, unrolled, chart), stretched(unrolled, chart), inside].into_iter().flatten().collect()
 }
 
 /// That a part may have been placed elsewhere.
@@ -58,6 +58,21 @@ fn aside(placed: &Mesh, unrolled: &Mesh, chart: &Chart) -> Option<String> {
         format!(
             "The guide of layers.chart passes up to {aside:.1} mm beside the middle of the part's sections: check its points; they are \
              those of the part as it stands on the table. beadwright guide finds them."
+        )
+    })
+}
+
+/// Beads that lie farther apart than planned by more than this are worth a word.
+const STRETCHED: f64 = 0.01;
+
+/// That beads lie farther apart than planned on the slopes of a surface.
+pub(super) fn stretched(unrolled: &Mesh, chart: &Chart) -> Option<String> {
+    let most = unrolled.vertices.iter().map(|p| chart.stretch(p.truncate())).fold(1.0, f64::max) - 1.0;
+    (most > STRETCHED).then(|| {
+        format!(
+            "Beads lie up to {:.1} % farther apart than planned, and layers are as much thinner, where the surface is steepest; the metal \
+             is that of the part.",
+            100.0 * most
         )
     })
 }
@@ -100,13 +115,14 @@ impl<'a> Unrolled<'a> {
         if chart.is_level() {
             return Ok(None);
         }
-        let PartRef::Mesh { mesh, milled } = part else { return Err(PlanError::ChartOfCurves) };
+        let PartRef::Mesh { mesh, milled, .. } = part else { return Err(PlanError::ChartOfCurves) };
         stock::is_closed(mesh, profile)?;
         let own = unrolled(mesh, profile, task)?;
         if own.triangles.is_empty() {
             return Err(PlanError::Empty(format!(
-                "all of the part lies below the first layer of {chart} (layers.chart); the part's coordinates are those in which \
-                 it stands on the table."
+                "all of the part lies below the first layer of {} (layers.chart); the part's coordinates are those in which it \
+                 stands on the table.",
+                chart.short()
             )));
         }
         let milled = milled.map(|part| unrolled(part, profile, task)).transpose()?;
@@ -114,7 +130,7 @@ impl<'a> Unrolled<'a> {
     }
 
     pub(super) fn part(&self) -> PartRef<'_> {
-        PartRef::Mesh { mesh: &self.mesh, milled: self.milled.as_deref() }
+        PartRef::Mesh { mesh: &self.mesh, milled: self.milled.as_deref(), onto: None }
     }
 }
 

@@ -2,12 +2,14 @@
 
 use super::charted;
 use crate::chart::warp::WarpError;
+use crate::chart::{Chart, Plane};
 use crate::fill::wall::Wall;
 use crate::fill::{Path, Strategy, StrategyName, sound};
 use crate::model::{Mesh, NO_NEIGHBOUR, Part};
 use crate::profile::{Predict, Profile};
 use crate::slice::{Slab, Slice, Slicer, Surface};
 use crate::task::{Cancelled, Task};
+use glam::DVec3;
 use planar::{Join, Polygon, Region};
 
 /// The profile that a part is planned with.
@@ -37,6 +39,9 @@ const MOSTLY: f64 = 0.8;
 pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result<Choice, Cancelled> {
     let mut profile = profile.clone();
     let mut note = None;
+    if let Part::Mesh(import) = part {
+        begin_where_it_does(&import.mesh, &mut profile);
+    }
     match part {
         Part::Curves { .. } => profile.fill.strategy = StrategyName::Wall,
         Part::Mesh(import) if is_wall_surface(&import.mesh, &profile) => profile.fill.strategy = StrategyName::Wall,
@@ -63,6 +68,25 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     Ok(Choice { profile, note })
 }
 
+/// Level layers of what begins above the table begin there.
+fn begin_where_it_does(mesh: &Mesh, profile: &mut Profile) {
+    let raised = |chart: &Chart, mesh: &Mesh| {
+        let low = mesh.bounds().0.z;
+        let plane = Plane { origin: DVec3::Z * low, ..Plane::default() };
+        (chart.is_level() && low.is_finite() && low > ON_TABLE).then_some(Chart::Plane(plane))
+    };
+    let layers = &mut profile.layers;
+    for body in &mut layers.bodies {
+        body.chart = raised(&body.chart, &body.of_mesh(mesh)).unwrap_or_else(|| body.chart.clone());
+    }
+    if layers.bodies.is_empty() {
+        layers.chart = raised(&layers.chart, mesh).unwrap_or_else(|| layers.chart.clone());
+    }
+}
+
+/// What begins no higher than this stands on the table, mm.
+const ON_TABLE: f64 = 1e-3;
+
 /// Why `loop` does not fill what it could.
 const ALL_WALLS: &str = "Strategy wall instead of loop: all of the part is walls for one bead";
 
@@ -74,7 +98,7 @@ fn of_solid(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<(Strat
     let mesh = match charted::unrolled(mesh, profile, task) {
         Err(WarpError::Cancelled(cancelled)) => return Err(cancelled),
         // The plan says why.
-        Err(WarpError::Torn(_)) => return Ok(None),
+        Err(_) => return Ok(None),
         Ok(mesh) => mesh,
     };
     let predict = |walls: Walls| match profile.layers.predict {

@@ -138,7 +138,7 @@ pub fn plan_into<'a, S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     let given = part.into();
-    if !profile.layers.bodies.is_empty() {
+    if !profile.layers.bodies.is_empty() || matches!(given, PartRef::Mesh { onto: Some(_), .. }) {
         return bodies::bodies_into(name, given, profile, task, sink);
     }
     let unrolled = Unrolled::of(given, profile, task)?;
@@ -163,7 +163,7 @@ fn plan_at<S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     match part {
-        PartRef::Mesh { mesh, milled } => {
+        PartRef::Mesh { mesh, milled, .. } => {
             let strategy = profile.fill.strategy.strategy();
             plan_mesh(warmth, name, (mesh, milled), footing, strategy, profile, task, sink)
         }

@@ -172,7 +172,7 @@ impl<E> From<WarpError> for PlanError<E> {
     fn from(error: WarpError) -> Self {
         match error {
             WarpError::Cancelled(cancelled) => Self::Cancelled(cancelled),
-            torn @ WarpError::Torn(_) => Self::Chart(torn),
+            misplaced => Self::Chart(misplaced),
         }
     }
 }

@@ -82,6 +82,29 @@ impl Body {
         Ok(file.body)
     }
 
+    /// A whole part as one body.
+    pub fn of(name: &str, chart: Chart) -> Self {
+        Self { name: name.to_owned(), chart, within: Vec::new(), on_stock: false, strategy: None, predict: None }
+    }
+
+    /// The text of a file of bodies.
+    pub fn write(bodies: &[Self]) -> String {
+        let mut text = String::new();
+        for body in bodies {
+            // Charts hold no quotation marks; a name may.
+            text.push_str(&format!("[[body]]\nname = {}\nchart = \"{}\"\n", toml::Value::from(body.name.as_str()), body.chart));
+            if !body.within.is_empty() {
+                let planes: Vec<String> = body.within.iter().map(|plane| format!("\"{plane}\"")).collect();
+                text.push_str(&format!("within = [{}]\n", planes.join(", ")));
+            }
+            if body.on_stock {
+                text.push_str("on_stock = true\n");
+            }
+            text.push('\n');
+        }
+        text
+    }
+
     /// The part of a mesh that it is. Around an axis and along a guide, what lies below its first layer is still there.
     pub fn of_mesh(&self, mesh: &Mesh) -> Mesh {
         let first = match &self.chart {

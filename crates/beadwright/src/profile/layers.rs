@@ -49,6 +49,10 @@ pub struct LayersSection {
     /// The bodies as which a part is welded, one after another, each with layers of its own kind; optional.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<Body>,
+    /// The box around an existing part on which this one is welded, its lowest and highest corner, mm: travels between bodies keep
+    /// clear of it. `plan --onto` sets it; optional.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base: Option<[[f64; 3]; 2]>,
 }
 
 fn yes() -> bool {

@@ -52,7 +52,7 @@ use crate::program::{ProgramSettings, Programmer, Safety, Weave};
 use crate::robot::Track;
 use crate::slice::{LayerFit, SliceOptions};
 use crate::weld::WeldSettings;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use std::borrow::Borrow;
 
@@ -439,7 +439,8 @@ impl Profile {
         let (process, ends) = (self.process.clone(), self.start_stop.clone());
         let (travel, motion) = (self.travel.clone(), self.motion);
         let charts = self.layers.charts().cloned().collect();
-        let weld = WeldSettings { process, ends, travel, motion, arc_end_time: None, standing: 0.0, charts };
+        let base = self.layers.base.map(|corners| corners.map(DVec3::from_array));
+        let weld = WeldSettings { process, ends, travel, motion, arc_end_time: None, standing: 0.0, charts, base };
         let arc_end_time = self.posts.iter().find_map(|post| self.dialects.get(post)?.arc_end_time(&weld));
         WeldSettings { arc_end_time, ..weld }
     }

@@ -1,6 +1,6 @@
 //! How a layer lies in space, for the scripts of the report: `lie.js` takes its points there.
 
-use crate::chart::{Chart, Sheet};
+use crate::chart::{Chart, Plane, Sheet};
 use crate::layer::Layer;
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -8,13 +8,20 @@ use std::f64::consts::TAU;
 
 /// What places a layer, and how far its top lies above its middle. Lengths in mm.
 pub(super) fn lie(chart: &Chart, layer: &Layer) -> Value {
-    let mut lie = place(chart, layer.middle());
+    let mut lie = place(chart, layer.middle(), layer.body);
     lie["top"] = json!(layer.z - layer.middle());
     lie
 }
 
-/// A plane with the bend of its guide, or a surface around an axis.
-fn place(chart: &Chart, middle: f64) -> Value {
+/// The surface of a body, over which its layers lie, as splines.
+pub(super) fn surface(chart: &Chart) -> Value {
+    let Chart::Surface(surface) = chart else { return Value::Null };
+    let control: Vec<f64> = surface.control().iter().map(|v| (v * 1e4).round() / 1e4).collect();
+    json!({ "from": surface.from(), "step": surface.step(), "columns": surface.columns(), "control": control })
+}
+
+/// A plane with the bend of its guide, a surface around an axis, or the height over the surface of a body.
+fn place(chart: &Chart, middle: f64, body: usize) -> Value {
     let sheet = chart.sheet(middle);
     let at = |u: f64, v: f64| sheet.at(DVec3::new(u, v, middle));
     let origin = at(0.0, 0.0);
@@ -22,6 +29,10 @@ fn place(chart: &Chart, middle: f64) -> Value {
         Chart::Plane(_) | Chart::Guide(_) => {
             let bend = [DVec3::X, DVec3::Y].map(|p| 1.0 - sheet.rise(p.truncate()));
             json!({ "flat": { "origin": origin.place, "along": origin.along, "normal": origin.normal, "bend": bend } })
+        }
+        Chart::Surface(surface) => {
+            let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| Chart::Plane(Plane { up: surface.up(), origin: DVec3::ZERO }).sheet(0.0).at(axis).place);
+            json!({ "over": { "axes": axes, "middle": middle, "body": body } })
         }
         Chart::Cylinder(_) => {
             let [around, axis] = origin.along;
@@ -89,7 +100,7 @@ mod tests {
         ];
         for text in charts {
             let (chart, middle): (Chart, f64) = (text.parse()?, 12.5);
-            let (sheet, lie) = (chart.sheet(middle), place(&chart, middle));
+            let (sheet, lie) = (chart.sheet(middle), place(&chart, middle, 0));
             for (u, v, up) in [(0.0, 7.0, 0.0), (3.0, 20.0, 0.8), (-40.0, 31.0, -0.9), (11.0, -5.0, 1.0)] {
                 // A cone has only one side of its tip.
                 let v = if matches!(chart, Chart::Cone(_)) { v.abs() + 30.0 } else { v };

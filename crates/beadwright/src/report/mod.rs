@@ -194,9 +194,11 @@ impl Report {
         let times: Vec<[f64; 3]> = self.times.iter().map(|parts| parts.map(|s| (s * 10.0).round() / 10.0)).collect();
         let (times, warmth) = (json!(times), self.warmth());
         let lies = json!(self.lies);
+        let surfaces: Vec<_> = self.profile.layers.charts().map(lie::surface).collect();
+        let surfaces = json!(surfaces);
         let ranges = json!({ "width": self.widths.ends(), "speed": self.speeds.ends() });
         format!(
-            "{{\"bead\":{bead},\"ranges\":{ranges},\"times\":{times},\"warmth\":{warmth},\"lies\":{lies},\"layers\":[{layers}],\"maps\":[{maps}]}}"
+            "{{\"bead\":{bead},\"ranges\":{ranges},\"times\":{times},\"warmth\":{warmth},\"lies\":{lies},\"surfaces\":{surfaces},\"layers\":[{layers}],\"maps\":[{maps}]}}"
         )
     }
 

@@ -21,9 +21,9 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
     let (layers, bodies) = (&profile.layers, &profile.layers.bodies);
     let lie = match bodies.len() {
         _ if layers.are_level() => String::new(),
-        0 => format!(" Layers lie on {}; each is shown unrolled, and in its place in 3-D.", layers.chart),
+        0 => format!(" Layers lie on {}; each is shown unrolled, and in its place in 3-D.", layers.chart.short()),
         _ => {
-            let lies: Vec<String> = bodies.iter().map(|body| format!("{} on {}", body.name, body.chart)).collect();
+            let lies: Vec<String> = bodies.iter().map(|body| format!("{} on {}", body.name, body.chart.short())).collect();
             format!(" Each layer is shown unrolled, and in its place in 3-D: {}.", lies.join("; "))
         }
     };

@@ -222,3 +222,59 @@ fn the_checks_of_a_plan_of_bodies_are_those_of_its_bodies() {
     let texts = |found: &[beadwright::Finding]| found.iter().map(|f| f.text.clone()).collect::<Vec<_>>();
     assert_eq!(texts(&whole), texts(&each));
 }
+
+#[test]
+fn caps_and_cladding_follow_their_surface() {
+    for (name, layers) in [("dome", 6), ("clad", 3)] {
+        let example = example::find(name).unwrap();
+        let (mesh, profile) = (example.mesh(), with_bodies(&example.bodies().unwrap()));
+        let plan = planned(&mesh, &profile).unwrap();
+        let metrics = &plan.summary.metrics;
+        assert!(plan.summary.forbidden.is_empty(), "{name}: {:?}", plan.summary.forbidden);
+        assert_eq!((metrics.layers, metrics.arc_starts), (layers, layers), "{name}");
+        assert!((metrics.deposited_volume_mm3 / mesh.volume() - 1.0).abs() < 0.02, "{name}");
+        let found = check::check(&plan.layers, &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
+        assert!(found.iter().all(|f| !["off-level", "void", "overfill"].contains(&f.kind)), "{name}: {found:?}");
+        // The metal of each pass is that of the program: time × speed in space holds what the plan says.
+        let (mut programmer, mut seconds, mut at) = (profile.programmer().unfitted(), 0.0, DVec3::ZERO);
+        for instruction in plan.layers.iter().flat_map(|layer| programmer.layer(layer).instructions) {
+            let Some(to) = instruction.target() else { continue };
+            if let Instruction::Weld { speed, .. } = instruction {
+                seconds += at.distance(to) / speed;
+            }
+            at = to;
+        }
+        let process = &profile.process;
+        let planned: f64 = plan.layers.iter().flat_map(|layer| &layer.passes).map(|pass| pass.seconds(process)).sum();
+        assert!((seconds / planned - 1.0).abs() < 2e-3, "{name}: {seconds} {planned}");
+    }
+}
+
+/// A part on a base, wherever both lie.
+#[test]
+fn a_part_on_a_base_must_lie_on_it() {
+    let base = mesh_of(&[block(DVec3::new(-60.0, -40.0, 0.0), DVec3::new(60.0, 40.0, 25.0))]);
+    let part = |x: f64| mesh_of(&[block(DVec3::new(x - 20.0, -15.0, 25.0), DVec3::new(x + 20.0, 15.0, 37.0))]);
+    let plan = |x: f64| {
+        let mesh = part(x);
+        let import = beadwright::model::Import {
+            mesh: mesh.clone(),
+            repair: beadwright::model::RepairReport::default(),
+            format: "test",
+            units: None,
+            objects: Vec::new(),
+            notes: Vec::new(),
+            milled: None,
+        };
+        let model = beadwright::model::Part::Mesh(import);
+        let choice = plan::choice::choose(&model, &profile("cmt-al2319-kuka"), true, &Task::new()).unwrap();
+        let solid = beadwright::model::PartRef::from(&mesh).onto(&base);
+        (plan::plan("part", solid, &choice.profile, &Task::new()).unwrap(), choice.profile)
+    };
+    let (on_it, profile) = plan(0.0);
+    assert!(on_it.summary.forbidden.is_empty(), "{:?}", on_it.summary.forbidden);
+    let low = on_it.layers.iter().flat_map(|layer| beads(layer, &profile)).map(|p| p.z).fold(f64::INFINITY, f64::min);
+    assert!(low > 25.0 && low < 28.0, "{low}");
+    let (beside, _) = plan(75.0);
+    assert!(beside.summary.warnings.summaries().any(|w| w.kind == WarningKind::InTheAir), "{:?}", beside.summary.forbidden);
+}

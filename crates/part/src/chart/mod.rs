@@ -10,6 +10,7 @@
 //! | `cylinder` | layers around an axis, outwards or inwards |
 //! | `cone` | layers on a cone |
 //! | `guide` | layers square to a curve of lines and arcs |
+//! | `surface` | layers that follow a surface |
 //! | `polar` | what layers around an axis have in common: angles, and where a turn ends |
 //! | [`warp`] | a mesh in the coordinates of a chart |
 //! | [`seam`] | islands that cross the line at which a layer is unrolled |
@@ -21,6 +22,7 @@ mod guide;
 mod plane;
 mod polar;
 pub mod seam;
+mod surface;
 mod text;
 pub mod warp;
 
@@ -28,6 +30,7 @@ pub use cone::Cone;
 pub use cylinder::{Cylinder, Side};
 pub use guide::{Guide, GuideError};
 pub use plane::Plane;
+pub use surface::{Surface, SurfaceError};
 pub use text::ChartError;
 
 use crate::model::Mesh;
@@ -50,6 +53,8 @@ pub enum Chart {
     Cone(Cone),
     /// Planes square to a curve.
     Guide(Arc<Guide>),
+    /// Over a surface.
+    Surface(Arc<Surface>),
 }
 
 impl Default for Chart {
@@ -73,6 +78,7 @@ pub struct At {
 enum Lie<'a> {
     Flat(&'a Plane),
     Along(&'a Guide),
+    Over(&'a Surface),
     Around(&'a dyn Polar),
 }
 
@@ -105,6 +111,7 @@ impl Chart {
             }
             Self::Cone(cone) => Self::Cone(cone.lowered(by)),
             Self::Guide(guide) => Self::Guide(Arc::new(guide.begun_earlier(by))),
+            Self::Surface(surface) => Self::Surface(Arc::new(surface.lowered(by))),
         }
     }
 
@@ -115,6 +122,15 @@ impl Chart {
             Self::Cylinder(_) => "cylinder",
             Self::Cone(_) => "cone",
             Self::Guide(_) => "guide",
+            Self::Surface(_) => "surface",
+        }
+    }
+
+    /// The text by which people know it, without long lists of numbers.
+    pub fn short(&self) -> String {
+        match self {
+            Self::Surface(surface) => format!("surface:up={}, over {} heights", surface.up(), surface.heights().len()),
+            _ => self.to_string(),
         }
     }
 
@@ -141,6 +157,7 @@ impl Chart {
         match self.lie() {
             Lie::Flat(plane) => plane.coordinates(p),
             Lie::Along(guide) => guide.coordinates(p),
+            Lie::Over(surface) => surface.coordinates(p),
             Lie::Around(polar) => {
                 let around = polar.around(p);
                 polar.unrolled(around.angle, around.along, around.height).extend(around.height)
@@ -161,6 +178,14 @@ impl Chart {
         placed.volume()
     }
 
+    /// How much farther apart than planned beads lie at a place of a layer, at most: 1 but on the slopes of a surface.
+    pub fn stretch(&self, p: DVec2) -> f64 {
+        match self {
+            Self::Surface(surface) => surface.stretch(p),
+            _ => 1.0,
+        }
+    }
+
     /// Distance of a point from the axis, mm; `None` where layers are planes.
     pub fn off_axis(&self, p: DVec3) -> Option<f64> {
         self.polar().map(|polar| polar.off_axis(p))
@@ -169,7 +194,7 @@ impl Chart {
     /// How layers around an axis are unrolled; none where they are planes.
     fn polar(&self) -> Option<&dyn Polar> {
         match self {
-            Self::Plane(_) | Self::Guide(_) => None,
+            Self::Plane(_) | Self::Guide(_) | Self::Surface(_) => None,
             Self::Cylinder(cylinder) => Some(cylinder),
             Self::Cone(cone) => Some(cone),
         }
@@ -179,6 +204,7 @@ impl Chart {
         match self {
             Self::Plane(plane) => Lie::Flat(plane),
             Self::Guide(guide) => Lie::Along(guide),
+            Self::Surface(surface) => Lie::Over(surface),
             Self::Cylinder(cylinder) => Lie::Around(cylinder),
             Self::Cone(cone) => Lie::Around(cone),
         }
@@ -191,6 +217,7 @@ impl Sheet<'_> {
         match self.chart.lie() {
             Lie::Flat(plane) => plane.at(p),
             Lie::Along(guide) => guide.at(p, self.middle),
+            Lie::Over(surface) => surface.at(p),
             Lie::Around(polar) => {
                 let (angle, along) = polar.rolled(p.truncate(), self.middle);
                 let (angle, along) = polar.risen(angle, along, p.z - self.middle);
@@ -204,6 +231,7 @@ impl Sheet<'_> {
         match self.chart.lie() {
             Lie::Flat(plane) => plane.coordinates(p),
             Lie::Along(guide) => guide.on_layer(p, self.middle),
+            Lie::Over(surface) => surface.coordinates(p),
             Lie::Around(polar) => {
                 let around = polar.around(p);
                 let (nearest, _) = polar.rolled(near, self.middle);
@@ -295,9 +323,9 @@ impl Sheet<'_> {
     /// Points between two (without the first, with the last) so close together that straight pieces in space between them
     /// stay within `tolerance` (mm) of the straight piece in the chart, and normals turn by no more than `angle` (rad) on each.
     pub fn divided(&self, from: DVec3, to: DVec3, tolerance: f64, angle: f64) -> impl Iterator<Item = DVec3> + use<> {
-        let count = match self.chart.polar() {
-            None => 1,
-            Some(_) => self.pieces(from, to, tolerance, angle),
+        let count = match self.chart {
+            Chart::Plane(_) | Chart::Guide(_) => 1,
+            Chart::Cylinder(_) | Chart::Cone(_) | Chart::Surface(_) => self.pieces(from, to, tolerance, angle),
         };
         (1..=count).map(move |k| if k == count { to } else { from.lerp(to, k as f64 / count as f64) })
     }

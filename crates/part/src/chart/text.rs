@@ -1,7 +1,7 @@
 //! Charts as people write them: a name, then keys and values, such as `cylinder:axis=z,radius=36`.
 
-use super::{Chart, Cone, Cylinder, Guide, GuideError, Plane, Side};
-use glam::DVec3;
+use super::{Chart, Cone, Cylinder, Guide, GuideError, Plane, Side, Surface, SurfaceError};
+use glam::{DVec2, DVec3};
 use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[non_exhaustive]
 pub enum ChartError {
     /// No such chart.
-    #[error("\"{0}\" is no kind of layers: write plane, cylinder, cone or guide, such as cylinder:axis=z,radius=36")]
+    #[error("\"{0}\" is no kind of layers: write plane, cylinder, cone, guide or surface, such as cylinder:axis=z,radius=36")]
     Kind(String),
     /// No such key.
     #[error("a {kind} has no \"{key}\": it takes {known}")]
@@ -42,6 +42,9 @@ pub enum ChartError {
     /// Points and radii that give no guide.
     #[error(transparent)]
     Guide(#[from] GuideError),
+    /// Heights that give no surface.
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
     /// A value that must be given.
     #[error("a {kind} needs {key}: {why}")]
     Missing {
@@ -58,6 +61,7 @@ const PLANE: &str = "up and through";
 const CYLINDER: &str = "axis, through, radius, side and seam";
 const CONE: &str = "axis, tip, angle and seam";
 const GUIDE: &str = "points and radius";
+const SURFACE: &str = "up, from, step, columns and heights";
 
 impl FromStr for Chart {
     type Err = ChartError;
@@ -90,9 +94,37 @@ impl FromStr for Chart {
                 let given = Given::new("guide", GUIDE, values, &["points", "radius"])?;
                 Ok(Self::Guide(Arc::new(Guide::new(given.places("points")?, given.radii()?)?)))
             }
+            "surface" => Ok(Self::Surface(Arc::new(surface(values)?))),
             other => Err(ChartError::Kind(other.to_owned())),
         }
     }
+}
+
+fn surface(values: &str) -> Result<Surface, ChartError> {
+    let given = Given::new("surface", SURFACE, values, &["up", "from", "step", "columns", "heights"])?;
+    let heights = given.needed("heights", "those of a grid, row by row, mm; beadwright surface writes them")?;
+    let all: Option<Vec<f64>> = heights.split(BETWEEN).map(number).collect();
+    let all = all.ok_or_else(|| Given::wrong("heights", &shortened(heights), "write numbers in mm, such as 0:0.5:1.2"))?;
+    let from = given.needed("from", "where the first height lies, mm")?;
+    let place: Option<Vec<f64>> = from.split('/').map(number).collect();
+    let Some([x, y]) = place.as_deref() else { return Err(Given::wrong("from", from, "write x/y in mm, such as -60/-60")) };
+    let step = given.needed("step", "the distance of heights, mm")?;
+    let apart = number(step).filter(|step| (0.01..=1000.0).contains(step));
+    let apart = apart.ok_or_else(|| Given::wrong("step", step, "write mm, 0.01 to 1000"))?;
+    let columns = given.needed("columns", "how many heights a row has")?;
+    let count = columns.parse().map_err(|_| Given::wrong("columns", columns, "write a whole number"))?;
+    Ok(Surface::new(given.direction("up")?, DVec2::new(*x, *y), apart, count, all)?)
+}
+
+/// A finite number.
+fn number(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// The beginning of a long value.
+fn shortened(value: &str) -> String {
+    let start: String = value.chars().take(40).collect();
+    if start.len() < value.len() { format!("{start}…") } else { start }
 }
 
 fn plane(values: &str) -> Result<Plane, ChartError> {
@@ -129,6 +161,12 @@ impl fmt::Display for Chart {
             }
             Self::Cone(Cone { tip, axis, half_angle, seam }) => {
                 write!(f, "cone:axis={},tip={},angle={half_angle},seam={seam}", three_of(*axis), three_of(*tip))
+            }
+            Self::Surface(surface) => {
+                let heights: Vec<String> = surface.heights().iter().map(f64::to_string).collect();
+                let (up, from) = (three_of(surface.up()), surface.from());
+                write!(f, "surface:up={up},from={}/{},step={},columns={}", from.x, from.y, surface.step(), surface.columns())?;
+                write!(f, ",heights={}", heights.join(BETWEEN))
             }
             Self::Guide(guide) => {
                 let joined = |values: Vec<String>| values.join(BETWEEN);
@@ -204,6 +242,10 @@ impl<'a> Given<'a> {
 
     fn value(&self, key: &str) -> Option<&'a str> {
         self.pairs.iter().rfind(|(known, _)| *known == key).map(|(_, value)| *value)
+    }
+
+    fn needed(&self, key: &'static str, why: &'static str) -> Result<&'a str, ChartError> {
+        self.value(key).ok_or(ChartError::Missing { kind: self.kind, key, why })
     }
 
     fn wrong(key: &str, value: &str, expected: &'static str) -> ChartError {

@@ -5,7 +5,7 @@
 //! underside are planes.
 
 use super::polar::{Around, Polar, near};
-use super::{Chart, Guide, Lie};
+use super::{Chart, Guide, Lie, Surface};
 use crate::model::{Mesh, cut};
 use crate::task::{Cancelled, Task};
 use glam::DVec3;
@@ -33,6 +33,7 @@ pub fn warped(chart: &Chart, mesh: &Mesh, tolerance: f64, task: &Task) -> Result
     match chart.lie() {
         Lie::Flat(plane) => Ok(mapped(mesh.clone(), |p| plane.coordinates(p))),
         Lie::Along(guide) => along(guide, mesh, tolerance, task),
+        Lie::Over(surface) => over(surface, mesh, tolerance, task),
         Lie::Around(polar) => around(polar, mesh, tolerance, task),
     }
 }
@@ -50,6 +51,18 @@ pub enum WarpError {
         .0.x, .0.y, .0.z
     )]
     Torn(DVec3),
+    /// A surface too steep for layers over it.
+    #[error(
+        "near x {:.1} y {:.1} z {:.1} mm the surface slopes so much that beads would lie {:.0} % farther apart than planned; {:.0} % are \
+         allowed, which is a slope of 17.7°. Measure its heights along a direction nearer to its normal, or divide the part into bodies.",
+        .place.x, .place.y, .place.z, 100.0 * (.stretch - 1.0), 100.0 * (STEEPEST - 1.0)
+    )]
+    Steep {
+        /// A place, mm.
+        place: DVec3,
+        /// How much farther apart beads would lie there.
+        stretch: f64,
+    },
 }
 
 fn mapped(mut mesh: Mesh, coordinates: impl Fn(DVec3) -> DVec3) -> Mesh {
@@ -65,6 +78,28 @@ fn along(guide: &Guide, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh
     let whole = Mesh::from_triangles(divided.vertices, divided.triangles).0;
     Ok(mapped(whole, |p| guide.coordinates(p)))
 }
+
+fn over(surface: &Surface, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
+    let cut = |a: DVec3, b: DVec3| {
+        let (from, to) = (surface.coordinates(a), surface.coordinates(b));
+        let off = |part: f64| surface.coordinates(a.lerp(b, part)).distance(from.lerp(to, part));
+        let is_short = a.distance(b) < tolerance.max(SHORT_OVER * surface.step());
+        let bent = !is_short && [0.25, 0.5, 0.75].into_iter().any(|part| off(part) > tolerance);
+        Ok(bent.then(|| a.midpoint(b)))
+    };
+    let divided = Divided::of(mesh, cut, task)?;
+    let whole = Mesh::from_triangles(divided.vertices, divided.triangles).0;
+    let unrolled = mapped(whole, |p| surface.coordinates(p));
+    match unrolled.vertices.iter().find(|p| surface.stretch(p.truncate()) > STEEPEST) {
+        Some(p) => Err(WarpError::Steep { place: surface.at(*p).place, stretch: surface.stretch(p.truncate()) }),
+        None => Ok(unrolled),
+    }
+}
+
+/// Edges shorter than this part of the grid of a surface are straight over it.
+const SHORT_OVER: f64 = 0.02;
+/// Slopes on which beads would lie farther apart than by this factor are refused.
+const STEEPEST: f64 = 1.05;
 
 fn around(polar: &dyn Polar, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
     let divided = Divided::of(mesh, |a, b| Ok(is_bent(a, b, polar, tolerance).then(|| a.midpoint(b))), task)?;

@@ -5,13 +5,16 @@
 //! | `bracket`, `cross`, `gear`, `plate`, `propeller`, `star`, `vase` | one solid part each |
 //! | `hub`, `shaft` | one part each that is welded in layers around its axis |
 //! | `elbow` | a part that is welded in layers square to its middle line |
+//! | `dome`, `clad` | one part each that is welded in layers over a surface |
 //! | `y_tube` | a part that is welded as several bodies |
 //! | [`blade`], `gourd`, `pot`, `tian`, `wall` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
 
 pub mod blade;
 mod bracket;
+mod clad;
 mod cross;
+mod dome;
 mod elbow;
 mod gear;
 mod gourd;
@@ -31,6 +34,7 @@ use crate::curve::Nurbs;
 use crate::model::iges::{self, WriteOptions};
 use crate::model::solid::Solid;
 use crate::model::{Mesh, stl};
+use glam::DVec2;
 
 /// A part that the program itself can generate; it stands on z = 0, centred about the z axis.
 #[derive(Debug, Clone, Copy)]
@@ -43,8 +47,8 @@ pub struct Example {
     curves: Option<fn() -> Vec<Nurbs>>,
     /// How its layers lie if they are not level: [`Chart`](crate::chart::Chart) as text.
     pub chart: Option<&'static str>,
-    /// The bodies as which it is welded, if they are several: the text of a file of bodies.
-    several: Option<&'static str>,
+    /// The text of its file of bodies, where a chart alone does not say how it is welded.
+    bodies: Option<fn() -> String>,
 }
 
 /// Every example, by name.
@@ -55,7 +59,7 @@ pub const ALL: &[Example] = &[
         build: blade::build,
         curves: Some(blade::curves),
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "bracket",
@@ -63,7 +67,15 @@ pub const ALL: &[Example] = &[
         build: bracket::build,
         curves: None,
         chart: None,
-        several: None,
+        bodies: None,
+    },
+    Example {
+        name: "clad",
+        about: "cladding 5.6 mm thick on a saddle, welded in layers that follow it, 140 × 90 × 15.6 mm",
+        build: clad::build,
+        curves: None,
+        chart: None,
+        bodies: Some(clad::bodies),
     },
     Example {
         name: "cross",
@@ -71,7 +83,15 @@ pub const ALL: &[Example] = &[
         build: cross::build,
         curves: None,
         chart: None,
-        several: None,
+        bodies: None,
+    },
+    Example {
+        name: "dome",
+        about: "dished cap 12 mm thick, welded over a mould in layers that follow it, 140 × 140 × 20.3 mm",
+        build: dome::build,
+        curves: None,
+        chart: None,
+        bodies: Some(dome::bodies),
     },
     Example {
         name: "elbow",
@@ -79,7 +99,7 @@ pub const ALL: &[Example] = &[
         build: elbow::build,
         curves: None,
         chart: Some(elbow::CHART),
-        several: None,
+        bodies: None,
     },
     Example {
         name: "gear",
@@ -87,7 +107,7 @@ pub const ALL: &[Example] = &[
         build: gear::build,
         curves: None,
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "gourd",
@@ -95,7 +115,7 @@ pub const ALL: &[Example] = &[
         build: gourd::build,
         curves: Some(gourd::curves),
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "hub",
@@ -103,7 +123,7 @@ pub const ALL: &[Example] = &[
         build: hub::build,
         curves: None,
         chart: Some("cylinder:axis=z,radius=40"),
-        several: None,
+        bodies: None,
     },
     Example {
         name: "plate",
@@ -111,7 +131,7 @@ pub const ALL: &[Example] = &[
         build: plate::build,
         curves: None,
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "pot",
@@ -119,7 +139,7 @@ pub const ALL: &[Example] = &[
         build: pot::build,
         curves: Some(pot::curves),
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "propeller",
@@ -127,7 +147,7 @@ pub const ALL: &[Example] = &[
         build: propeller::build,
         curves: None,
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "shaft",
@@ -135,7 +155,7 @@ pub const ALL: &[Example] = &[
         build: shaft::build,
         curves: None,
         chart: Some("cylinder:axis=z,radius=25"),
-        several: None,
+        bodies: None,
     },
     Example {
         name: "star",
@@ -143,7 +163,7 @@ pub const ALL: &[Example] = &[
         build: star::build,
         curves: None,
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "tian",
@@ -151,7 +171,7 @@ pub const ALL: &[Example] = &[
         build: tian::build,
         curves: Some(tian::curves),
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "vase",
@@ -159,7 +179,7 @@ pub const ALL: &[Example] = &[
         build: vase::build,
         curves: None,
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "wall",
@@ -167,7 +187,7 @@ pub const ALL: &[Example] = &[
         build: wall::build,
         curves: Some(wall::curves),
         chart: None,
-        several: None,
+        bodies: None,
     },
     Example {
         name: "y-tube",
@@ -175,9 +195,25 @@ pub const ALL: &[Example] = &[
         build: y_tube::build,
         curves: None,
         chart: None,
-        several: Some(y_tube::BODIES),
+        bodies: Some(|| y_tube::BODIES.to_owned()),
     },
 ];
+
+/// A file with one body, whose layers lie over a surface: its heights on a grid of `step` (mm), `columns` and `rows` to each side of
+/// the middle.
+fn surface_body(name: &str, step: f64, columns: i32, rows: i32, height: impl Fn(DVec2) -> f64) -> String {
+    let at = |i: i32, j: i32| DVec2::new(f64::from(i), f64::from(j)) * step;
+    let grid = (-rows..=rows).flat_map(|j| (-columns..=columns).map(move |i| at(i, j)));
+    let heights: Vec<String> = grid.map(|p| format!("{:.4}", height(p))).collect();
+    let from = at(-columns, -rows);
+    format!(
+        "[[body]]\nname = \"{name}\"\nchart = \"surface:up=z,from={}/{},step={step},columns={},heights={}\"\n",
+        from.x,
+        from.y,
+        2 * columns + 1,
+        heights.join(":")
+    )
+}
 
 /// The example with this name.
 pub fn find(name: &str) -> Option<&'static Example> {
@@ -195,7 +231,7 @@ impl Example {
     /// The bodies as which it is welded, as a file of them (`beadwright plan --bodies`); `None` where its layers are level.
     pub fn bodies(&self) -> Option<String> {
         let one = || self.chart.map(|chart| format!("[[body]]\nname = \"{}\"\nchart = \"{chart}\"\n", self.name));
-        self.several.map(str::to_owned).or_else(one)
+        self.bodies.map(|bodies| bodies()).or_else(one)
     }
 
     /// The centre-lines of the wall as an IGES file, mm; `None` for parts that are not thin walls.

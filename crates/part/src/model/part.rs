@@ -88,12 +88,22 @@ pub enum PartRef<'a> {
         mesh: &'a Mesh,
         /// What is milled from it afterwards ([`Import::milled`]).
         milled: Option<&'a Mesh>,
+        /// An existing part on which it is welded.
+        onto: Option<&'a Mesh>,
     },
     /// The centre-lines of a wall, and where it ends, mm.
     Curves(&'a WallCurves, f64),
 }
 
-impl PartRef<'_> {
+impl<'a> PartRef<'a> {
+    /// The same solid, welded on an existing part; curves stay as they are.
+    pub fn onto(self, base: &'a Mesh) -> Self {
+        match self {
+            Self::Mesh { mesh, milled, .. } => Self::Mesh { mesh, milled, onto: Some(base) },
+            curves @ Self::Curves(..) => curves,
+        }
+    }
+
     /// Lowest and highest coordinates, mm.
     pub fn bounds(self) -> (DVec3, DVec3) {
         match self {
@@ -108,7 +118,7 @@ impl PartRef<'_> {
 
 impl<'a> From<&'a Import> for PartRef<'a> {
     fn from(import: &'a Import) -> Self {
-        Self::Mesh { mesh: &import.mesh, milled: import.milled.as_ref().map(|milled| &milled.mesh) }
+        Self::Mesh { mesh: &import.mesh, milled: import.milled.as_ref().map(|milled| &milled.mesh), onto: None }
     }
 }
 
@@ -123,7 +133,7 @@ impl<'a> From<&'a Part> for PartRef<'a> {
 
 impl<'a> From<&'a Mesh> for PartRef<'a> {
     fn from(mesh: &'a Mesh) -> Self {
-        Self::Mesh { mesh, milled: None }
+        Self::Mesh { mesh, milled: None, onto: None }
     }
 }
 
@@ -242,6 +252,21 @@ impl Placement {
         }
         mesh.check_reach()?;
         Ok(import)
+    }
+
+    /// A placed solid with an existing part on which it is welded, which is placed with it: as they lie in their files, they are one.
+    ///
+    /// # Errors
+    /// As of [`Self::solid`].
+    pub fn solid_onto(&self, import: Import, base: Import, bead_width: f64) -> Result<(Import, Mesh), PartError> {
+        let (mesh, own) = (import.mesh.clone(), import.mesh.vertices.len());
+        let mut joint = mesh.clone();
+        joint.vertices.extend(&base.mesh.vertices);
+        let units = import.units.or(base.units);
+        let placed = self.solid(Import { mesh: joint, units, ..import }, bead_width)?;
+        let (vertices, below) = placed.mesh.vertices.split_at(own);
+        let base = Mesh { vertices: below.to_vec(), ..base.mesh };
+        Ok((Import { mesh: Mesh { vertices: vertices.to_vec(), ..mesh }, ..placed }, base))
     }
 
     fn grown(&self, outlines: &Outlines, height: Option<f64>, bead_width: f64) -> Result<Part, PartError> {

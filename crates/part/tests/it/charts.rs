@@ -1,7 +1,7 @@
 //! Charts: their closed forms, meshes in their coordinates, and slices of parts around an axis.
 
 use bead_part::chart::warp::{self, WarpError};
-use bead_part::chart::{Chart, Guide};
+use bead_part::chart::{Chart, Guide, Surface};
 use bead_part::example;
 use bead_part::middle_line::{NoMiddleLine, middle_line};
 use bead_part::model::Mesh;
@@ -383,4 +383,79 @@ fn travels_over_a_wedge_keep_their_height() {
         assert!((top.distance(at(119.0)) - 2.0 * (1.0 - x / 120.0)).abs() < 1e-9, "{x}");
         assert!(above.distance(top) > 19.3, "{x}: {}", above.distance(top));
     }
+}
+
+/// Heights of a saddle on a grid, along a direction.
+fn saddle(up: DVec3, step: f64, half: i32, height: impl Fn(DVec2) -> f64) -> Surface {
+    let at = |i: i32, j: i32| DVec2::new(f64::from(i), f64::from(j)) * step;
+    let heights = (-half..=half).flat_map(|j| (-half..=half).map(move |i| at(i, j))).map(height).collect();
+    Surface::new(up, at(-half, -half), step, 2 * half as usize + 1, heights).unwrap()
+}
+
+#[test]
+fn surfaces_go_through_their_heights() {
+    let wavy = |p: DVec2| 4.0 * (p.x / 30.0).sin() + 3.0 * (p.y / 40.0).cos();
+    // Halving the step makes the error smaller by its fourth power.
+    let off = |step: f64| {
+        let half = (90.0 / step) as i32;
+        let chart = Chart::Surface(Arc::new(saddle(DVec3::Z, step, half, wavy)));
+        let places = (0..400).map(|k| DVec2::new(f64::from(k % 20) - 10.0, f64::from(k / 20) - 10.0) * 5.1);
+        places.map(|p| (chart.sheet(0.0).at(p.extend(0.0)).place.z - wavy(p)).abs()).fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (off(10.0), off(5.0));
+    assert!(coarse < 0.01 && fine < coarse / 10.0, "{coarse} {fine}");
+}
+
+#[test]
+fn what_lies_over_a_surface_comes_back() {
+    let ramp = |p: DVec2| 0.1 * p.x - 0.05 * p.y + p.x * p.y / 3000.0;
+    for up in [DVec3::Z, DVec3::new(0.3, -0.2, 1.0).normalize(), DVec3::NEG_X] {
+        let surface = saddle(up, 8.0, 9, ramp);
+        let chart = Chart::Surface(Arc::new(surface.clone()));
+        assert_eq!(chart.to_string().parse(), Ok(chart.clone()));
+        for p in places() {
+            let sheet = chart.sheet(3.0);
+            let at = sheet.at(p);
+            assert!(sheet.coordinates(at.place, p.truncate()).distance(p) < 1e-9);
+            assert!(at.along[0].cross(at.along[1]).distance(at.normal) < 1e-9);
+            // Neighbours on the layer lie square to the normal, as far apart as the stretch says at most.
+            let step = 1e-4;
+            for way in [DVec3::X, DVec3::Y, DVec3::new(0.6, 0.8, 0.0)] {
+                let moved = (sheet.at(p + way * step).place - sheet.at(p - way * step).place) / (2.0 * step);
+                assert!(moved.dot(at.normal).abs() < 1e-6);
+                assert!(moved.length() > 1.0 - 1e-9 && moved.length() <= chart.stretch(p.truncate()) + 1e-6);
+            }
+        }
+    }
+}
+
+/// What lies over a surface has the metal that it has in space, and a part seen from above gives its surface.
+#[test]
+fn examples_over_surfaces_keep_their_volume() {
+    for (name, thickness) in [("dome", 12.0), ("clad", 5.6)] {
+        let example = example::find(name).unwrap();
+        let bodies = example.bodies().unwrap();
+        let chart: Chart = bodies.split("chart = \"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
+        let mesh = example.mesh();
+        let unrolled = warp::warped(&chart, &mesh, 0.02, &Task::new()).unwrap();
+        assert!((unrolled.volume() / mesh.volume() - 1.0).abs() < 2e-3, "{name}");
+        assert!((unrolled.bounds().1.z - thickness).abs() < 0.03, "{name}: {}", unrolled.bounds().1.z);
+        let seen = Chart::Surface(Arc::new(Surface::of_mesh(&mesh, DVec3::Z, 5.0).unwrap()));
+        for p in [DVec2::ZERO, DVec2::new(30.0, -20.0), DVec2::new(-41.0, 22.0)] {
+            let [top, under] = [&seen, &chart].map(|chart| chart.sheet(0.0).at(p.extend(0.0)).place.z);
+            assert!((top - under - thickness).abs() < 0.02, "{name}: {top} {under}");
+        }
+    }
+    let cross = example::find("cross").unwrap().mesh();
+    let steep = Chart::Surface(Arc::new(saddle(DVec3::Z, 10.0, 9, |p| 0.5 * p.x - 100.0)));
+    assert!(warp::warped(&steep, &cross, 0.02, &Task::new()).unwrap_err().to_string().contains("17.7°"));
+}
+
+#[test]
+fn heights_that_give_no_surface_are_refused() {
+    let error = |text: &str| text.parse::<Chart>().unwrap_err().to_string();
+    assert!(error("surface:from=0/0,step=5,columns=4,heights=0:0:0").contains("give no surface"));
+    assert!(error("surface:from=0/0,step=5,columns=4,heights=0:x").contains("write numbers"));
+    assert!(error("surface:from=0,step=5,columns=4,heights=0").contains("x/y"));
+    assert!(error("surface:step=5").contains("needs heights"));
 }

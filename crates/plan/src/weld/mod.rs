@@ -23,6 +23,7 @@ pub use torch::{Begun, Pause, Torch, Transfer, Way, Welded};
 use crate::motion::Motion;
 use crate::process::{Process, StartStop, Travel};
 use bead_part::chart::Chart;
+use glam::DVec3;
 
 /// What times, travels and moves depend on besides the passes.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +43,8 @@ pub struct WeldSettings {
     pub standing: f64,
     /// How the layers of each body lie in space; at least one.
     pub charts: Vec<Chart>,
+    /// The box around an existing part on which this one is welded: lowest and highest corner, mm.
+    pub base: Option<[DVec3; 2]>,
 }
 
 impl WeldSettings {

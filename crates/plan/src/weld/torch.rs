@@ -152,7 +152,9 @@ impl Torch {
 
     /// A torch whose travels and times count.
     pub fn of(settings: &WeldSettings) -> Self {
-        let WeldSettings { process, ends, travel, motion, arc_end_time, standing, charts } = settings.clone();
+        let WeldSettings { process, ends, travel, motion, arc_end_time, standing, charts, base } = settings.clone();
+        let mut room = Room::default();
+        base.iter().flatten().for_each(|corner| room.add(*corner));
         Self {
             process: Some(process.at_layer(0)),
             nominal: Some(process),
@@ -162,6 +164,7 @@ impl Torch {
             arc_end_time,
             travel_speed: travel.speed,
             charts,
+            room,
             highest: standing,
             ..Self::new(travel.clearance)
         }

@@ -1,0 +1,275 @@
+//! Layers that follow a surface: cladding, hard-facing, layers over a mould. The surface is its heights along one direction, on a
+//! square grid, joined smoothly by cubic splines.
+//!
+//! (u, v) are the place seen along that direction, h the height over the surface along it. So a millimetre of u × v × h is a cubic
+//! millimetre, and all layers are alike; where the surface slopes, beads lie farther apart than planned, by as much as the slope is
+//! longer than its shadow ([`Surface::stretch`]).
+
+use super::At;
+use crate::model::Mesh;
+use glam::{DQuat, DVec2, DVec3};
+
+/// A surface over which layers lie.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    up: DVec3,
+    from: DVec2,
+    step: f64,
+    columns: usize,
+    heights: Vec<f64>,
+    /// Those of the splines.
+    control: Vec<f64>,
+}
+
+/// Why heights give no surface.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SurfaceError {
+    /// Too few or too many heights, or not a whole number of rows.
+    #[error(
+        "{heights} heights in rows of {columns} give no surface: write whole rows, at least {LEAST} of at least {LEAST} heights, at most \
+         {MOST} in all"
+    )]
+    Grid {
+        /// How many heights there are.
+        heights: usize,
+        /// How many a row has.
+        columns: usize,
+    },
+    /// A mesh of which nothing is seen along the direction.
+    #[error("nothing of the model is seen along the direction of the surface")]
+    Nothing,
+}
+
+/// Heights of a row, and rows.
+const LEAST: usize = 4;
+/// Heights in all.
+const MOST: usize = 250_000;
+
+impl Surface {
+    /// The surface over which heights (mm) along `up` lie, row by row: `step` (mm) apart, the first at `from` (mm), in the
+    /// coordinates that [`Plane`](super::Plane)s square to `up` through the origin have.
+    ///
+    /// ```
+    /// use bead_part::chart::Surface;
+    /// use glam::{DVec2, DVec3};
+    ///
+    /// // A ramp that rises by 1 mm in 10.
+    /// let heights = (0..25).map(|k| f64::from(k % 5)).collect();
+    /// let ramp = Surface::new(DVec3::Z, DVec2::ZERO, 10.0, 5, heights)?;
+    /// assert!((ramp.stretch(DVec2::splat(17.0)) - 1.01_f64.sqrt()).abs() < 1e-12);
+    /// # Ok::<(), bead_part::chart::SurfaceError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SurfaceError::Grid`].
+    pub fn new(up: DVec3, from: DVec2, step: f64, columns: usize, heights: Vec<f64>) -> Result<Self, SurfaceError> {
+        let rows = heights.len() / columns.max(1);
+        if columns < LEAST || rows < LEAST || rows * columns != heights.len() || heights.len() > MOST {
+            return Err(SurfaceError::Grid { heights: heights.len(), columns });
+        }
+        // Splines through the heights, but for the fourth power of the step.
+        let bent = |k: usize, at: usize, count: usize, by: usize| {
+            if at == 0 || at + 1 == count { 0.0 } else { heights[k - by] - 2.0 * heights[k] + heights[k + by] }
+        };
+        let control = (0..heights.len())
+            .map(|k| heights[k] - (bent(k, k % columns, columns, 1) + bent(k, k / columns, rows, columns)) / 6.0)
+            .collect();
+        Ok(Self { up, from, step, columns, heights, control })
+    }
+
+    /// The surface of a mesh as it is seen along `up`, from its topmost side, on a grid of `step` (mm). Beside the mesh and over its
+    /// openings the surface goes on straight for a few steps, then level.
+    ///
+    /// # Errors
+    /// [`SurfaceError`].
+    pub fn of_mesh(mesh: &Mesh, up: DVec3, step: f64) -> Result<Self, SurfaceError> {
+        let turn = turn(up).conjugate();
+        let seen: Vec<DVec3> = mesh.vertices.iter().map(|p| turn * *p).collect();
+        let corner = |least: DVec2, p: &DVec3| least.min(p.truncate());
+        let low = seen.iter().fold(DVec2::INFINITY, corner);
+        let high = -seen.iter().map(|p| -*p).fold(DVec2::INFINITY, |least, p| corner(least, &p));
+        if !(low.is_finite() && high.is_finite()) {
+            return Err(SurfaceError::Nothing);
+        }
+        // One step of margin, so that the whole part lies on the grid.
+        let from = ((low / step).floor() - 1.0) * step;
+        let counts = ((high - from) / step).ceil() + 2.0;
+        let [columns, rows] = [counts.x as usize, counts.y as usize].map(|count| count.max(LEAST));
+        if columns * rows > MOST {
+            return Err(SurfaceError::Grid { heights: columns * rows, columns });
+        }
+        let mut tops = vec![None; columns * rows];
+        for corners in &mesh.triangles {
+            raise(&mut tops, columns, from, step, corners.map(|corner| seen[corner as usize]));
+        }
+        let heights = spread(tops, columns).ok_or(SurfaceError::Nothing)?;
+        Self::new(up, from, step, columns, heights)
+    }
+
+    /// Direction along which heights are measured.
+    pub fn up(&self) -> DVec3 {
+        self.up
+    }
+
+    /// Where the first height lies, mm.
+    pub fn from(&self) -> DVec2 {
+        self.from
+    }
+
+    /// Distance of heights, mm.
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Heights of a row.
+    pub fn columns(&self) -> usize {
+        self.columns
+    }
+
+    /// Heights along `up`, row by row, mm.
+    pub fn heights(&self) -> &[f64] {
+        &self.heights
+    }
+
+    /// The control points of the cubic splines, as the heights lie, mm.
+    pub fn control(&self) -> &[f64] {
+        &self.control
+    }
+
+    /// How much longer the steepest way on the surface is at a place than seen along `up`.
+    pub fn stretch(&self, p: DVec2) -> f64 {
+        (1.0 + self.at_place(p).1.length_squared()).sqrt()
+    }
+
+    /// The same surface, lower by some mm.
+    pub(super) fn lowered(&self, by: f64) -> Self {
+        let lower = |heights: &[f64]| heights.iter().map(|height| height - by).collect();
+        Self { heights: lower(&self.heights), control: lower(&self.control), ..*self }
+    }
+
+    pub(super) fn coordinates(&self, p: DVec3) -> DVec3 {
+        let seen = turn(self.up).conjugate() * p;
+        seen.with_z(seen.z - self.at_place(seen.truncate()).0)
+    }
+
+    pub(super) fn at(&self, p: DVec3) -> At {
+        let turn = turn(self.up);
+        let (height, slope) = self.at_place(p.truncate());
+        let normal = DVec3::new(-slope.x, -slope.y, 1.0).normalize();
+        let along = DVec3::new(1.0, 0.0, slope.x).normalize();
+        let place = turn * p.with_z(p.z + height);
+        At { place, along: [turn * along, turn * normal.cross(along)], normal: turn * normal }
+    }
+
+    /// Height (mm) and slope of the surface at a place; beyond the grid it goes on straight.
+    fn at_place(&self, p: DVec2) -> (f64, DVec2) {
+        let rows = self.heights.len() / self.columns;
+        let last = DVec2::new((self.columns - 1) as f64, (rows - 1) as f64);
+        let place = (p - self.from) / self.step;
+        let on_grid = place.clamp(DVec2::ZERO, last);
+        let cell = on_grid.floor().min(last - 1.0);
+        let part = on_grid - cell;
+        let (x, y) = (Basis::at(part.x), Basis::at(part.y));
+        let (mut height, mut slope) = (0.0, DVec2::ZERO);
+        for j in 0..4 {
+            for i in 0..4 {
+                let control = self.control_at(cell.x as isize + i as isize - 1, cell.y as isize + j as isize - 1);
+                height += control * x.value[i] * y.value[j];
+                slope += control * DVec2::new(x.slope[i] * y.value[j], x.value[i] * y.slope[j]) / self.step;
+            }
+        }
+        (height + slope.dot((place - on_grid) * self.step), slope)
+    }
+
+    /// Beyond the edge, control points go on straight.
+    fn control_at(&self, column: isize, row: isize) -> f64 {
+        let rows = (self.control.len() / self.columns) as isize;
+        let columns = self.columns as isize;
+        if column < 0 {
+            return 2.0 * self.control_at(0, row) - self.control_at(1, row);
+        }
+        if column >= columns {
+            return 2.0 * self.control_at(columns - 1, row) - self.control_at(columns - 2, row);
+        }
+        if row < 0 {
+            return 2.0 * self.control_at(column, 0) - self.control_at(column, 1);
+        }
+        if row >= rows {
+            return 2.0 * self.control_at(column, rows - 1) - self.control_at(column, rows - 2);
+        }
+        self.control[(row * columns + column) as usize]
+    }
+}
+
+fn turn(up: DVec3) -> DQuat {
+    DQuat::from_rotation_arc(DVec3::Z, up)
+}
+
+/// The four cubic splines over a cell, and their slopes.
+struct Basis {
+    value: [f64; 4],
+    slope: [f64; 4],
+}
+
+impl Basis {
+    fn at(t: f64) -> Self {
+        let s = 1.0 - t;
+        let value = [s * s * s, 4.0 - 6.0 * t * t + 3.0 * t * t * t, 4.0 - 6.0 * s * s + 3.0 * s * s * s, t * t * t];
+        let slope = [-s * s, 3.0 * t * t - 4.0 * t, 4.0 * s - 3.0 * s * s, t * t];
+        Self { value: value.map(|v| v / 6.0), slope: slope.map(|v| v / 2.0) }
+    }
+}
+
+/// Raises the heights that a triangle covers.
+fn raise(tops: &mut [Option<f64>], columns: usize, from: DVec2, step: f64, [a, b, c]: [DVec3; 3]) {
+    let [p, q, r] = [a, b, c].map(|corner| (corner.truncate() - from) / step);
+    let area = (q - p).perp_dot(r - p);
+    if area == 0.0 {
+        return;
+    }
+    let (low, high) = (p.min(q).min(r).ceil().max(DVec2::ZERO), p.max(q).max(r).floor());
+    for row in low.y as usize..=high.y.max(0.0) as usize {
+        for column in low.x as usize..=high.x.max(0.0) as usize {
+            let at = DVec2::new(column as f64, row as f64);
+            let parts = [(q - at).perp_dot(r - at), (r - at).perp_dot(p - at), (p - at).perp_dot(q - at)].map(|part| part / area);
+            if parts.iter().any(|part| *part < -EDGE) {
+                continue;
+            }
+            let height = parts[0] * a.z + parts[1] * b.z + parts[2] * c.z;
+            if let Some(top) = tops.get_mut(row * columns + column).filter(|_| column < columns) {
+                *top = Some(top.map_or(height, |top: f64| top.max(height)));
+            }
+        }
+    }
+}
+
+/// Places this part of a triangle outside of it lie on its edge.
+const EDGE: f64 = 1e-9;
+
+/// Heights everywhere: where there are none, the surface goes on straight for a few steps, then level.
+fn spread(mut tops: Vec<Option<f64>>, columns: usize) -> Option<Vec<f64>> {
+    tops.iter().any(Option::is_some).then_some(())?;
+    let mut straight = STRAIGHT;
+    while tops.iter().any(Option::is_none) {
+        let top = |column: isize, row: isize| {
+            let column = usize::try_from(column).ok().filter(|column| *column < columns)?;
+            tops.get(usize::try_from(row).ok()? * columns + column).copied().flatten()
+        };
+        let mean = |k: usize| {
+            let (column, row) = ((k % columns) as isize, (k / columns) as isize);
+            let from = |(x, y): (isize, isize)| {
+                let near = top(column + x, row + y)?;
+                Some(top(column + 2 * x, row + 2 * y).filter(|_| straight > 0).map_or(near, |far| 2.0 * near - far))
+            };
+            let near: Vec<f64> = [(-1, 0), (1, 0), (0, -1), (0, 1)].into_iter().filter_map(from).collect();
+            (!near.is_empty()).then(|| near.iter().sum::<f64>() / near.len() as f64)
+        };
+        tops = (0..tops.len()).map(|k| tops[k].or_else(|| mean(k))).collect();
+        straight -= 1;
+    }
+    tops.into_iter().collect()
+}
+
+/// Steps for which a surface goes on straight beside its mesh.
+const STRAIGHT: i32 = 3;
