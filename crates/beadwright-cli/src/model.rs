@@ -152,7 +152,10 @@ impl Model {
 
     /// A solid with an existing part on which it is welded: both placed as one.
     pub(crate) fn placed_onto(&self, base: &Path, profile: &Profile, task: &Task) -> anyhow::Result<(Import, Mesh)> {
-        anyhow::ensure!(!self.placing.turns(), "--onto: the part lies as its base does, so it is not turned by itself (--turn turns both)");
+        anyhow::ensure!(
+            !self.placing.turns(),
+            "--onto: the part lies as its base does, so it is not turned by itself (--turn turns both)"
+        );
         let read = if self.placing.accept_damaged { model::import_damaged } else { model::import };
         let import = |path: &Path| {
             let bytes = convert::solid(path, file::model(path)?)?;

@@ -176,7 +176,12 @@ impl Arguments {
         );
         if let Some(base) = &self.onto {
             let (import, base) = self.model.placed_onto(base, profile, task)?;
-            return Ok(Build { whole: Part::Mesh(import), base: Some(base), places: Vec::new(), lowest_first: Vec::new() });
+            return Ok(Build {
+                whole: Part::Mesh(import),
+                base: Some(base),
+                places: Vec::new(),
+                lowest_first: Vec::new(),
+            });
         }
         self.several.stand(&self.model, |model| {
             let use_as = if self.preform { model::Use::Preform } else { model::Use::AsDrawn };
@@ -283,7 +288,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let report = files.refuse(&summary, &model.repair(), &arguments.output)?;
         let mut reasons = remedy::reasons(&summary);
         let hangs = |w: &WarningSummary| w.kind == WarningKind::InTheAir;
-        let hangs = summary.warnings.summaries().any(hangs) && !arguments.preform;
+        let hangs = summary.warnings.summaries().any(hangs) && !arguments.preform && profile.layers.are_level();
         if let Some(mesh) = model.mesh().filter(|_| hangs) {
             reasons.extend(preform::remedy(mesh, &profile, &task)?);
         }

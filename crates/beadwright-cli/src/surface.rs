@@ -74,7 +74,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 fn steepest(surface: &Surface) -> (f64, DVec2) {
     let rows = surface.heights().len() / surface.columns();
     // Without the margin, where the surface goes on level.
-    let cells = (1..rows - 2).flat_map(|j| (1..surface.columns() - 2).map(move |i| DVec2::new(i as f64 + 0.5, j as f64 + 0.5)));
+    let cells =
+        (1..rows - 2).flat_map(|j| (1..surface.columns() - 2).map(move |i| DVec2::new(i as f64 + 0.5, j as f64 + 0.5)));
     let at = |cell: DVec2| surface.from() + cell * surface.step();
     let stretched = cells.map(|cell| (surface.stretch(at(cell)), at(cell)));
     stretched.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((1.0, surface.from()))

@@ -1,7 +1,7 @@
 //! The totals of a plan: passes, lengths, times, wire, heat.
 
-use crate::chart::Chart;
 use crate::bead::wire_area;
+use crate::chart::Chart;
 use crate::layer::Layer;
 use crate::process::Cost;
 use crate::profile::{LayersSection, Profile};

@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod batch;
+mod bodies;
 mod book;
 mod cli;
 mod common;

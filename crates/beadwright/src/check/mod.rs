@@ -204,7 +204,9 @@ fn body_grown(
     task: &Task,
 ) -> Result<(Vec<Growth>, Option<Growth>), Cancelled> {
     let stacks = !profile.layers.chart.goes_around();
-    let Some(bounds) = extent(layers).filter(|_| stacks) else { return Ok((vec![Growth::default(); layers.len()], None)) };
+    let Some(bounds) = extent(layers).filter(|_| stacks) else {
+        return Ok((vec![Growth::default(); layers.len()], None));
+    };
     let mut stack = Stack::new(&bounds, settings);
     for layer in layers.iter().filter(|layer| is_finite(layer)) {
         task.check()?;

@@ -76,12 +76,18 @@ impl Beside {
         for (finished, points) in &self.finished {
             let worst = places
                 .par_iter()
-                .flat_map_iter(|tip| points.iter().filter_map(move |metal| lack(&torch, tip, *metal, travels).map(|lack| (lack, tip, metal))))
+                .flat_map_iter(|tip| {
+                    points
+                        .iter()
+                        .filter_map(move |metal| lack(&torch, tip, *metal, travels).map(|lack| (lack, tip, metal)))
+                })
                 .max_by(|a, b| (a.0.0 - a.0.1).total_cmp(&(b.0.0 - b.0.1)));
             if let Some(((needs, has), tip, metal)) = worst {
                 let (welded, finished) = (welded.to_owned(), finished.clone());
                 let new = Close { welded, finished, tip: tip.place, metal: *metal, needs, has, travels };
-                let same = |old: &&mut Close| old.welded == new.welded && old.finished == new.finished && old.travels == travels;
+                let same = |old: &&mut Close| {
+                    old.welded == new.welded && old.finished == new.finished && old.travels == travels
+                };
                 match self.close.iter_mut().find(same) {
                     Some(old) if old.needs - old.has < needs - has => *old = new,
                     Some(_) => {}
@@ -140,11 +146,13 @@ impl<'a, S> Watch<'a, S> {
             let count = (from.distance(to) / (STEP * self.profile.bead.width)).ceil().max(1.0) as usize;
             (0..=count).map(move |k| from.lerp(to, k as f64 / count as f64))
         };
-        let welded = layer.passes.iter().flat_map(|pass| pass.segments()).flat_map(|piece| spaced(piece.from, piece.to));
+        let welded =
+            layer.passes.iter().flat_map(|pass| pass.segments()).flat_map(|piece| spaced(piece.from, piece.to));
         let welded: Vec<At> = welded.map(|p| sheet.at(p)).collect();
         let ends = layer.passes.windows(2).filter_map(|pair| pair[0].end().zip(pair[1].start()));
         let over = DVec3::Z * self.profile.travel.clearance;
-        let travelled: Vec<At> = ends.flat_map(|(from, to)| spaced(from + over, to + over)).map(|p| sheet.at(p)).collect();
+        let travelled: Vec<At> =
+            ends.flat_map(|(from, to)| spaced(from + over, to + over)).map(|p| sheet.at(p)).collect();
         self.beside.look(&self.body.name, &welded, false);
         self.beside.look(&self.body.name, &travelled, true);
     }

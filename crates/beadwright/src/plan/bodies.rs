@@ -64,14 +64,15 @@ pub(super) fn bodies_into<S: Sink + Send>(
         let footing = if k == 0 && onto.is_none() { Footing::Plate } else { own.footing(under, task)? };
         let mut watch = Watch::new(&mut row, &mut beside, own.body, &own.profile);
         let summary = own.plan(footing, task, &mut watch)?;
-        told.add(&own.body.name, &summary);
+        told.add((owned.len() > 1).then_some(&own.body.name), &summary);
         beside.finish(&own.body.name, &own.mesh);
         volume = volume.zip(summary.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
         row.first += count;
     }
     let Row { mut metrics, warnings, .. } = row;
     metrics.mesh_volume_mm3 = volume;
-    let Told { mut notes, mut forbidden } = told;
+    let mut forbidden = told.forbidden_by(&warnings);
+    let Told { mut notes, .. } = told;
     notes.splice(0..0, (owned.len() > 1).then(|| sentence(&owned, &counts)));
     notes.extend(missing(mesh, volume).filter(|_| !profile.layers.bodies.is_empty()));
     notes.extend(beside.note());
@@ -101,8 +102,16 @@ fn missing(mesh: &Mesh, bodies: Option<f64>) -> Option<String> {
     let (whole, bodies) = (mesh.volume(), bodies?);
     let missing = whole - bodies;
     (missing.abs() > MISSING * whole).then(|| {
-        let what = if missing > 0.0 { "belong to no body and are not welded" } else { "belong to two bodies and would be welded twice" };
-        format!("{:.1} of {:.1} cm³ of the part {what} (layers.bodies: chart and within).", missing.abs() / 1e3, whole / 1e3)
+        let what = if missing > 0.0 {
+            "belong to no body and are not welded"
+        } else {
+            "belong to two bodies and would be welded twice"
+        };
+        format!(
+            "{:.1} of {:.1} cm³ of the part {what} (layers.bodies: chart and within).",
+            missing.abs() / 1e3,
+            whole / 1e3
+        )
     })
 }
 
@@ -156,11 +165,7 @@ impl Own<'_> {
     }
 
     /// What its first layer lies on.
-    fn footing<'m, E>(
-        &self,
-        below: impl Iterator<Item = &'m Mesh>,
-        task: &Task,
-    ) -> Result<Footing, PlanError<E>> {
+    fn footing<'m, E>(&self, below: impl Iterator<Item = &'m Mesh>, task: &Task) -> Result<Footing, PlanError<E>> {
         let chart = &self.profile.layers.chart;
         if self.body.on_stock || chart.is_level() {
             return Ok(Footing::Plate);

@@ -38,7 +38,10 @@ pub(super) fn notes(placed: &Mesh, unrolled: &Mesh, profile: &Profile) -> Vec<St
          after it ends."
             .to_owned()
     });
-    [aside(placed, unrolled, chart), below(placed, unrolled, chart), stretched(unrolled, chart), inside].into_iter().flatten().collect()
+    [aside(placed, unrolled, chart), below(placed, unrolled, chart), stretched(unrolled, chart), inside]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// That a part may have been placed elsewhere.

@@ -165,7 +165,7 @@ fn plan_at<S: Sink + Send>(
     match part {
         PartRef::Mesh { mesh, milled, .. } => {
             let strategy = profile.fill.strategy.strategy();
-            plan_mesh(warmth, name, (mesh, milled), footing, strategy, profile, task, sink)
+            plan_mesh((warmth, footing), name, (mesh, milled), strategy, profile, task, sink)
         }
         PartRef::Curves(curves, height) => plan_curves(warmth, name, curves, height, profile, task, sink),
     }
@@ -185,14 +185,13 @@ pub fn plan_with<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let mesh = &*charted::unrolled(mesh, profile, task)?;
     let warmth = warm::predicted(mesh.into(), profile, task)?;
-    plan_mesh(&warmth, name, (mesh, None), Footing::Plate, strategy, profile, task, sink)
+    plan_mesh((&warmth, Footing::Plate), name, (mesh, None), strategy, profile, task, sink)
 }
 
 fn plan_mesh<S: Sink + Send>(
-    warmth: &Warmth,
+    (warmth, footing): (&Warmth, Footing),
     name: &str,
     (mesh, milled): (&Mesh, Option<&Mesh>),
-    footing: Footing,
     strategy: &dyn Strategy,
     profile: &Profile,
     task: &Task,
@@ -321,7 +320,8 @@ fn plan_curves<S: Sink + Send>(
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let mut summary = run([name, profile.fill.strategy.name()], extent, (heat, Footing::Plate), profile, task, sink, fill_batch)?;
+    let mut summary =
+        run([name, profile.fill.strategy.name()], extent, (heat, Footing::Plate), profile, task, sink, fill_batch)?;
     summary.notes.extend(centre_lines::other_thickness(given, profile));
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(

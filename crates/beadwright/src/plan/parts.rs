@@ -10,7 +10,7 @@ use crate::model::PartRef;
 use crate::process::TorchShape;
 use crate::profile::Profile;
 use crate::task::Task;
-use crate::warning::Warnings;
+use crate::warning::{WarningSummary, Warnings};
 
 /// Plans parts next to each other on z = 0, each from its first layer to its last before the next one begins, and hands all
 /// layers to `sink`, numbered consecutively. Travels to another part pass over everything already built. Where the torch
@@ -55,13 +55,14 @@ pub fn parts_into<S: Sink + Send>(
         clearance.begin(name);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
         let own = plan_at(warmth, name, *part, Footing::Plate, profile, task, &mut watch)?;
-        told.add(name, &own);
+        told.add(Some(name), &own);
         volume = volume.zip(own.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
         row.first += count;
     }
     let Row { mut metrics, warnings, .. } = row;
     metrics.mesh_volume_mm3 = volume;
-    let Told { mut notes, mut forbidden } = told;
+    let mut forbidden = told.forbidden_by(&warnings);
+    let Told { mut notes, .. } = told;
     notes.insert(0, sentence(parts, &counts));
     forbidden.extend(clearance.close().iter().map(Close::sentence));
     Ok(Summary { metrics, warnings, notes, forbidden })
@@ -100,14 +101,23 @@ impl Told {
         Self { notes: profile.notes(), forbidden: profile.forbidden() }
     }
 
-    pub(super) fn add(&mut self, part: &str, own: &Summary) {
+    /// What a part adds, with its name if there are several. What it warns of is reported with the layers of all parts.
+    pub(super) fn add(&mut self, part: Option<&str>, own: &Summary) {
+        let warned: Vec<String> = own.warnings.summaries().map(WarningSummary::sentence).collect();
         let named = |known: &mut Vec<String>, new: &[String]| {
+            let new = new.iter().filter(|text| !known.contains(text) && !warned.contains(text));
             let new: Vec<String> =
-                new.iter().filter(|text| !known.contains(text)).map(|text| format!("{part}: {text}")).collect();
+                new.map(|text| part.map_or_else(|| text.clone(), |part| format!("{part}: {text}"))).collect();
             known.extend(new);
         };
         named(&mut self.notes, &own.notes);
         named(&mut self.forbidden, &own.forbidden);
+    }
+
+    /// What forbids the plan of all parts: first what they warn of.
+    pub(super) fn forbidden_by(&self, warnings: &Warnings) -> Vec<String> {
+        let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
+        forbids.chain(self.forbidden.iter().cloned()).collect()
     }
 }
 

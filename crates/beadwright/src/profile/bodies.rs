@@ -44,7 +44,9 @@ struct File {
 
 /// Why a file of bodies cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("line {line}: {reason}. Each body is a table [[body]] with a name, and chart, within, on_stock and strategy where they are needed.")]
+#[error(
+    "line {line}: {reason}. Each body is a table [[body]] with a name, and chart, within, on_stock and strategy where they are needed."
+)]
 pub struct BodiesError {
     /// Number of the line, from 1.
     line: usize,
@@ -92,7 +94,11 @@ impl Body {
         let mut text = String::new();
         for body in bodies {
             // Charts hold no quotation marks; a name may.
-            text.push_str(&format!("[[body]]\nname = {}\nchart = \"{}\"\n", toml::Value::from(body.name.as_str()), body.chart));
+            text.push_str(&format!(
+                "[[body]]\nname = {}\nchart = \"{}\"\n",
+                toml::Value::from(body.name.as_str()),
+                body.chart
+            ));
             if !body.within.is_empty() {
                 let planes: Vec<String> = body.within.iter().map(|plane| format!("\"{plane}\"")).collect();
                 text.push_str(&format!("within = [{}]\n", planes.join(", ")));

@@ -31,7 +31,8 @@ fn place(chart: &Chart, middle: f64, body: usize) -> Value {
             json!({ "flat": { "origin": origin.place, "along": origin.along, "normal": origin.normal, "bend": bend } })
         }
         Chart::Surface(surface) => {
-            let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| Chart::Plane(Plane { up: surface.up(), origin: DVec3::ZERO }).sheet(0.0).at(axis).place);
+            let axes = [DVec3::X, DVec3::Y, DVec3::Z]
+                .map(|axis| Chart::Plane(Plane { up: surface.up(), origin: DVec3::ZERO }).sheet(0.0).at(axis).place);
             json!({ "over": { "axes": axes, "middle": middle, "body": body } })
         }
         Chart::Cylinder(_) => {
@@ -101,7 +102,7 @@ mod tests {
         for text in charts {
             let (chart, middle): (Chart, f64) = (text.parse()?, 12.5);
             let (sheet, lie) = (chart.sheet(middle), place(&chart, middle, 0));
-            for (u, v, up) in [(0.0, 7.0, 0.0), (3.0, 20.0, 0.8), (-40.0, 31.0, -0.9), (11.0, -5.0, 1.0)] {
+            for (u, v, up) in [(0.0_f64, 7.0_f64, 0.0), (3.0, 20.0, 0.8), (-40.0, 31.0, -0.9), (11.0, -5.0, 1.0)] {
                 // A cone has only one side of its tip.
                 let v = if matches!(chart, Chart::Cone(_)) { v.abs() + 30.0 } else { v };
                 let (here, there) = (sheet.at(DVec3::new(u, v, middle + up)).place, placed(&lie, u, v, up));

@@ -23,7 +23,8 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
         _ if layers.are_level() => String::new(),
         0 => format!(" Layers lie on {}; each is shown unrolled, and in its place in 3-D.", layers.chart.short()),
         _ => {
-            let lies: Vec<String> = bodies.iter().map(|body| format!("{} on {}", body.name, body.chart.short())).collect();
+            let lies: Vec<String> =
+                bodies.iter().map(|body| format!("{} on {}", body.name, body.chart.short())).collect();
             format!(" Each layer is shown unrolled, and in its place in 3-D: {}.", lies.join("; "))
         }
     };

@@ -112,7 +112,10 @@ fn ways_between_bodies_touch_nothing() {
                     let near = |p: DVec3| laid.iter().map(|metal| metal.distance(p)).fold(f64::INFINITY, f64::min);
                     let close = (0..=steps).map(|k| from.lerp(to, k as f64 / steps.max(1) as f64)).map(near);
                     let last = to.distance(beads(layer, &profile).next().unwrap()) < 0.01;
-                    assert!(last || close.fold(f64::INFINITY, f64::min) > 0.45 * profile.travel.clearance, "{from} {to}");
+                    assert!(
+                        last || close.fold(f64::INFINITY, f64::min) > 0.45 * profile.travel.clearance,
+                        "{from} {to}"
+                    );
                     long += 1;
                 }
                 _ => {}
@@ -276,5 +279,9 @@ fn a_part_on_a_base_must_lie_on_it() {
     let low = on_it.layers.iter().flat_map(|layer| beads(layer, &profile)).map(|p| p.z).fold(f64::INFINITY, f64::min);
     assert!(low > 25.0 && low < 28.0, "{low}");
     let (beside, _) = plan(75.0);
-    assert!(beside.summary.warnings.summaries().any(|w| w.kind == WarningKind::InTheAir), "{:?}", beside.summary.forbidden);
+    assert!(
+        beside.summary.warnings.summaries().any(|w| w.kind == WarningKind::InTheAir),
+        "{:?}",
+        beside.summary.forbidden
+    );
 }

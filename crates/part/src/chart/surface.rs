@@ -232,7 +232,8 @@ fn raise(tops: &mut [Option<f64>], columns: usize, from: DVec2, step: f64, [a, b
     for row in low.y as usize..=high.y.max(0.0) as usize {
         for column in low.x as usize..=high.x.max(0.0) as usize {
             let at = DVec2::new(column as f64, row as f64);
-            let parts = [(q - at).perp_dot(r - at), (r - at).perp_dot(p - at), (p - at).perp_dot(q - at)].map(|part| part / area);
+            let parts = [(q - at).perp_dot(r - at), (r - at).perp_dot(p - at), (p - at).perp_dot(q - at)]
+                .map(|part| part / area);
             if parts.iter().any(|part| *part < -EDGE) {
                 continue;
             }

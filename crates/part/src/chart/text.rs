@@ -11,7 +11,9 @@ use std::sync::Arc;
 #[non_exhaustive]
 pub enum ChartError {
     /// No such chart.
-    #[error("\"{0}\" is no kind of layers: write plane, cylinder, cone, guide or surface, such as cylinder:axis=z,radius=36")]
+    #[error(
+        "\"{0}\" is no kind of layers: write plane, cylinder, cone, guide or surface, such as cylinder:axis=z,radius=36"
+    )]
     Kind(String),
     /// No such key.
     #[error("a {kind} has no \"{key}\": it takes {known}")]
@@ -104,10 +106,13 @@ fn surface(values: &str) -> Result<Surface, ChartError> {
     let given = Given::new("surface", SURFACE, values, &["up", "from", "step", "columns", "heights"])?;
     let heights = given.needed("heights", "those of a grid, row by row, mm; beadwright surface writes them")?;
     let all: Option<Vec<f64>> = heights.split(BETWEEN).map(number).collect();
-    let all = all.ok_or_else(|| Given::wrong("heights", &shortened(heights), "write numbers in mm, such as 0:0.5:1.2"))?;
+    let all =
+        all.ok_or_else(|| Given::wrong("heights", &shortened(heights), "write numbers in mm, such as 0:0.5:1.2"))?;
     let from = given.needed("from", "where the first height lies, mm")?;
     let place: Option<Vec<f64>> = from.split('/').map(number).collect();
-    let Some([x, y]) = place.as_deref() else { return Err(Given::wrong("from", from, "write x/y in mm, such as -60/-60")) };
+    let Some([x, y]) = place.as_deref() else {
+        return Err(Given::wrong("from", from, "write x/y in mm, such as -60/-60"));
+    };
     let step = given.needed("step", "the distance of heights, mm")?;
     let apart = number(step).filter(|step| (0.01..=1000.0).contains(step));
     let apart = apart.ok_or_else(|| Given::wrong("step", step, "write mm, 0.01 to 1000"))?;
@@ -165,7 +170,14 @@ impl fmt::Display for Chart {
             Self::Surface(surface) => {
                 let heights: Vec<String> = surface.heights().iter().map(f64::to_string).collect();
                 let (up, from) = (three_of(surface.up()), surface.from());
-                write!(f, "surface:up={up},from={}/{},step={},columns={}", from.x, from.y, surface.step(), surface.columns())?;
+                write!(
+                    f,
+                    "surface:up={up},from={}/{},step={},columns={}",
+                    from.x,
+                    from.y,
+                    surface.step(),
+                    surface.columns()
+                )?;
                 write!(f, ",heights={}", heights.join(BETWEEN))
             }
             Self::Guide(guide) => {

@@ -23,7 +23,9 @@ pub(super) fn bodies() -> String {
 
 pub(super) fn build() -> Solid {
     let [columns, rows] = PIECES;
-    let place = |i: u32, j: u32| HALF * (2.0 * DVec2::new(f64::from(i) / f64::from(columns), f64::from(j) / f64::from(rows)) - 1.0);
+    let place = |i: u32, j: u32| {
+        HALF * (2.0 * DVec2::new(f64::from(i) / f64::from(columns), f64::from(j) / f64::from(rows)) - 1.0)
+    };
     let pair = |p: DVec2| [p.extend(saddle(p) + THICKNESS), p.extend(saddle(p))];
     let vertices: Vec<DVec3> = (0..=rows).flat_map(|j| (0..=columns).flat_map(move |i| pair(place(i, j)))).collect();
     let top = |i: u32, j: u32| 2 * (j * (columns + 1) + i);

@@ -38,7 +38,8 @@ pub(super) fn build() -> Solid {
     for k in 0..AROUND {
         triangles.extend([[0, above(1, k), above(1, k + 1)], [1, below(1, k + 1), below(1, k)]]);
         for ring in 1..RINGS {
-            let [a, b, c, d] = [(ring, k), (ring + 1, k), (ring + 1, k + 1), (ring, k + 1)].map(|(ring, k)| above(ring, k));
+            let [a, b, c, d] =
+                [(ring, k), (ring + 1, k), (ring + 1, k + 1), (ring, k + 1)].map(|(ring, k)| above(ring, k));
             triangles.extend([[a, b, c], [a, c, d], [a + 1, c + 1, b + 1], [a + 1, d + 1, c + 1]]);
         }
         let [a, b] = [above(RINGS, k), above(RINGS, k + 1)];

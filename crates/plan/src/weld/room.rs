@@ -50,10 +50,12 @@ impl Room {
         if !is_under {
             return p;
         }
-        let ways = [(p.x - low.x, p.with_x(low.x)), (high.x - p.x, p.with_x(high.x)), (p.y - low.y, p.with_y(low.y)), (
-            high.y - p.y,
-            p.with_y(high.y),
-        )];
+        let ways = [
+            (p.x - low.x, p.with_x(low.x)),
+            (high.x - p.x, p.with_x(high.x)),
+            (p.y - low.y, p.with_y(low.y)),
+            (high.y - p.y, p.with_y(high.y)),
+        ];
         ways.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).map_or(p, |(_, aside)| aside)
     }
 }
@@ -84,7 +86,8 @@ mod tests {
 
     #[test]
     fn no_leg_enters_the_room() {
-        let places = [[-5.0, 30.0, 20.0], [105.0, 10.0, 0.0], [50.0, 30.0, -5.0], [20.0, 20.0, 45.0], [50.0, 65.0, 39.0]];
+        let places =
+            [[-5.0, 30.0, 20.0], [105.0, 10.0, 0.0], [50.0, 30.0, -5.0], [20.0, 20.0, 45.0], [50.0, 65.0, 39.0]];
         let places = places.map(DVec3::from_array);
         for (from, to) in places.into_iter().flat_map(|from| places.map(|to| (from, to))) {
             let legs: Vec<DVec3> = std::iter::once(from).chain(room().around(from, to, 5.0)).collect();

@@ -244,7 +244,8 @@ impl Torch {
         let last = entry.at(above);
         let first = At { place: at.place + at.normal * self.room.out(&at, self.clearance), ..at };
         let around = self.room.around(first.place, last.place, self.clearance);
-        let legs: Vec<At> = std::iter::once(first).chain(around.into_iter().map(|place| At { place, ..last })).collect();
+        let legs: Vec<At> =
+            std::iter::once(first).chain(around.into_iter().map(|place| At { place, ..last })).collect();
         let (length, moving) = self.travel_from(at.place, legs.iter().map(|leg| leg.place));
         self.seconds += moving;
         self.at = Some(above);

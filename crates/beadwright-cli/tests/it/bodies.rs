@@ -1,0 +1,97 @@
+//! Parts of several bodies, on surfaces and on existing parts, as people plan them.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn fails(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    assert!(!output.status.success());
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// A block as an ASCII STL file, from its lowest to its highest corner.
+fn block(path: &Path, low: [f64; 3], high: [f64; 3]) {
+    let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 1 { high[axis] } else { low[axis] });
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mut text = "solid block\n".to_owned();
+    for triangle in faces.iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]) {
+        text.push_str("facet normal 0 0 0\nouter loop\n");
+        for [x, y, z] in triangle.map(|k| corner(*k)) {
+            text.push_str(&format!("vertex {x} {y} {z}\n"));
+        }
+        text.push_str("endloop\nendfacet\n");
+    }
+    fs::write(path, text + "endsolid block\n").unwrap();
+}
+
+#[test]
+fn an_example_comes_with_its_bodies() {
+    let folder = TempDir::new().unwrap();
+    for name in ["y-tube", "dome", "shaft"] {
+        done(folder.path(), &["example", name, "-o", &format!("{name}.stl")]);
+        let (model, bodies) = (format!("{name}.stl"), format!("{name}.bodies.toml"));
+        let json = done(folder.path(), &["plan", &model, "--bodies", &bodies, "--no-deposit", "--json", "-o", "out"]);
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let [laid, part] = ["deposited_volume_mm3", "mesh_volume_mm3"].map(|key| json[key].as_f64().unwrap());
+        assert!((laid / part - 1.0).abs() < 0.02, "{name}: {laid} of {part}");
+        assert!(folder.path().join("out/report.html").exists());
+        let checked = run(folder.path(), &["check", "out/plan.json"]);
+        let said = String::from_utf8_lossy(&checked.stdout);
+        assert!(
+            !["overhang", "layers", "air", "crossing"].iter().any(|kind| said.contains(&format!("{kind} ("))),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn a_part_stands_on_an_existing_one_wherever_both_lie() {
+    let folder = TempDir::new().unwrap();
+    block(&folder.path().join("base.stl"), [100.0, 40.0, -12.0], [260.0, 150.0, 0.0]);
+    block(&folder.path().join("boss.stl"), [150.0, 80.0, 0.0], [210.0, 120.0, 15.0]);
+    block(&folder.path().join("beside.stl"), [250.0, 80.0, 0.0], [310.0, 120.0, 15.0]);
+    done(folder.path(), &["plan", "boss.stl", "--onto", "base.stl", "--turn", "0,0,30", "-o", "out"]);
+    let text = fs::read_to_string(folder.path().join("out/plan.json")).unwrap();
+    let plan: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let first = &plan["layers"][0]["passes"][0]["points"][0];
+    assert!((12.0..15.0).contains(&first[2].as_f64().unwrap()), "{first}");
+    let why = fails(folder.path(), &["plan", "beside.stl", "--onto", "base.stl", "-o", "out2"]);
+    assert_eq!(why.matches("hangs over nothing").count(), 1, "{why}");
+    assert!(why.contains("Layer 1:") && !why.contains("--preform plans"), "{why}");
+}
+
+#[test]
+fn a_surface_is_clad() {
+    let folder = TempDir::new().unwrap();
+    done(folder.path(), &["example", "clad", "-o", "clad.stl"]);
+    // The top of the cladding is as its foot is.
+    let output = run(folder.path(), &["surface", "clad.stl", "-o", "top.bodies.toml"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && said.contains("slopes by up to 1"), "{said}");
+    let bodies = fs::read_to_string(folder.path().join("top.bodies.toml")).unwrap();
+    assert!(bodies.starts_with("[[body]]\nname = \"clad\"\nchart = \"surface:up="), "{bodies}");
+    let why = fails(folder.path(), &["plan", "clad.stl", "--bodies", "top.bodies.toml", "-o", "out"]);
+    assert!(why.contains("body clad (layers.bodies)"), "{why}");
+}
+
+#[test]
+fn faults_of_a_file_of_bodies_are_named() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("b.toml"), "[[body]]\nname = \"a\"\nchart = \"disc:radius=3\"\n").unwrap();
+    let why = fails(folder.path(), &["plan", "cross", "--bodies", "b.toml"]);
+    assert!(why.contains("b.toml") && why.contains("line 3") && why.contains("no kind of layers"), "{why}");
+    let why = fails(folder.path(), &["plan", "cross", "--bodies", "missing.toml"]);
+    assert!(why.contains("missing.toml"), "{why}");
+}
