@@ -3,7 +3,7 @@
 
 use super::beside::{Beside, Watch};
 use super::charted::{self, Unrolled};
-use super::parts::Told;
+use super::parts::Remarks;
 use super::support::Footing;
 use super::{Header, PlanError, Sink, Summary, plan_at, slabs_of, warm};
 use crate::chart::{Chart, warp};
@@ -38,6 +38,9 @@ pub(super) fn bodies_into<S: Sink + Send>(
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     let PartRef::Mesh { mesh, milled: None, onto } = part else { return Err(PlanError::ChartOfCurves) };
+    if profile.layers.bodies.len() > 1 && !profile.process.layers.is_empty() {
+        return Err(PlanError::Parts(super::parts::NUMBERED_APART));
+    }
     let whole = [Body::of(name, profile.layers.chart.clone())];
     let bodies = if profile.layers.bodies.is_empty() { &whole[..] } else { &profile.layers.bodies };
     let bodies = bodies.iter().enumerate();
@@ -53,7 +56,7 @@ pub(super) fn bodies_into<S: Sink + Send>(
         .map_err(PlanError::Sink)?;
     let mut row =
         Row { profile, first: 0, body: 0, sink, metrics: Metrics::new(profile), warnings: Warnings::default() };
-    let mut told = Told::of(profile);
+    let mut remarks = Remarks::of(profile);
     let (mut beside, mut volume) = (Beside::new(profile), Some(0.0));
     if let Some(base) = onto {
         beside.finish(BASE, base);
@@ -64,15 +67,15 @@ pub(super) fn bodies_into<S: Sink + Send>(
         let footing = if k == 0 && onto.is_none() { Footing::Plate } else { own.footing(under, task)? };
         let mut watch = Watch::new(&mut row, &mut beside, own.body, &own.profile);
         let summary = own.plan(footing, task, &mut watch)?;
-        told.add((owned.len() > 1).then_some(&own.body.name), &summary);
+        remarks.add((owned.len() > 1).then_some(&own.body.name), &summary);
         beside.finish(&own.body.name, &own.mesh);
         volume = volume.zip(summary.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
         row.first += count;
     }
     let Row { mut metrics, warnings, .. } = row;
     metrics.mesh_volume_mm3 = volume;
-    let mut forbidden = told.forbidden_by(&warnings);
-    let Told { mut notes, .. } = told;
+    let mut forbidden = remarks.forbidden_by(&warnings);
+    let Remarks { mut notes, .. } = remarks;
     notes.splice(0..0, (owned.len() > 1).then(|| sentence(&owned, &counts)));
     notes.extend(missing(mesh, volume).filter(|_| !profile.layers.bodies.is_empty()));
     notes.extend(beside.note());

@@ -49,7 +49,8 @@ fn as_welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
 pub fn deposit_settings(profile: &Profile) -> DepositSettings {
     let (bead, pace) = (profile.bead(), profile.process.deposition_speed);
     let nominal = Nominal { bead, pace, rise: bead.rise(profile.stepover()) };
-    let over_one_another = !profile.layers.charts().any(Chart::goes_around);
+    // Bodies lie over one another only in space.
+    let over_one_another = profile.layers.bodies.len() < 2 && !profile.layers.charts().any(Chart::goes_around);
     DepositSettings { over_one_another, ..DepositSettings::new(nominal, profile.fill.machining_allowance) }
 }
 

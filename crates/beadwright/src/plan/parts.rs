@@ -30,9 +30,7 @@ pub fn parts_into<S: Sink + Send>(
         return Err(PlanError::Parts("layers.chart, layers.bodies: only parts with level layers can be"));
     }
     if !profile.process.layers.is_empty() {
-        return Err(PlanError::Parts(
-            "process.layers: layers are numbered separately for each part, so it is not clear which are meant",
-        ));
+        return Err(PlanError::Parts(NUMBERED_APART));
     }
     let predicted = |(_, part): &(String, PartRef)| -> Result<(Warmth, usize), PlanError<S::Error>> {
         let warmth = warm::predicted(*part, profile, task)?;
@@ -49,20 +47,20 @@ pub fn parts_into<S: Sink + Send>(
     sink.begin(&header).map_err(PlanError::Sink)?;
     let (mut clearance, width) = (Clearance::default(), profile.bead.width);
     let mut row = Row { first: 0, sink, metrics: Metrics::new(profile), warnings: Warnings::default() };
-    let mut told = Told::of(profile);
+    let mut remarks = Remarks::of(profile);
     let mut volume = Some(0.0);
     for (((name, part), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
         clearance.begin(name);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
         let own = plan_at(warmth, name, *part, Footing::Plate, profile, task, &mut watch)?;
-        told.add(Some(name), &own);
+        remarks.add(Some(name), &own);
         volume = volume.zip(own.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
         row.first += count;
     }
     let Row { mut metrics, warnings, .. } = row;
     metrics.mesh_volume_mm3 = volume;
-    let mut forbidden = told.forbidden_by(&warnings);
-    let Told { mut notes, .. } = told;
+    let mut forbidden = remarks.forbidden_by(&warnings);
+    let Remarks { mut notes, .. } = remarks;
     notes.insert(0, sentence(parts, &counts));
     forbidden.extend(clearance.close().iter().map(Close::sentence));
     Ok(Summary { metrics, warnings, notes, forbidden })
@@ -90,13 +88,17 @@ fn sentence(parts: &[(String, PartRef)], counts: &[usize]) -> String {
     format!("The parts are welded one after another: {}.", ranges.join(", "))
 }
 
+/// Why values for some layers cannot be used.
+pub(super) const NUMBERED_APART: &str =
+    "process.layers: layers are numbered separately for each part or body, so it is not clear which are meant";
+
 /// What is reported about the parts, each thing once.
-pub(super) struct Told {
+pub(super) struct Remarks {
     pub(super) notes: Vec<String>,
     pub(super) forbidden: Vec<String>,
 }
 
-impl Told {
+impl Remarks {
     pub(super) fn of(profile: &Profile) -> Self {
         Self { notes: profile.notes(), forbidden: profile.forbidden() }
     }

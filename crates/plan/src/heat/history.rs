@@ -37,6 +37,35 @@ impl History {
         starts.max_by(|a, b| a.2.total_cmp(&b.2))
     }
 
+    fn of(layers: Vec<LayerHeat>, build: &Build) -> Self {
+        let body = build.body();
+        Self {
+            layers,
+            spacing: build.spacing(),
+            seconds: build.seconds(),
+            supplied: body.supplied(),
+            lost: body.lost(),
+            held: body.energy(),
+            voxels: body.grid().len(),
+            voxel: build.voxel(),
+        }
+    }
+
+    /// This body, then another.
+    fn followed_by(mut self, mut next: Self) -> Self {
+        next.layers.iter_mut().for_each(|layer| layer.end += self.seconds);
+        self.layers.append(&mut next.layers);
+        Self {
+            seconds: self.seconds + next.seconds,
+            supplied: self.supplied + next.supplied,
+            lost: self.lost + next.lost,
+            held: self.held + next.held,
+            voxels: self.voxels + next.voxels,
+            voxel: self.voxel.max(next.voxel),
+            ..self
+        }
+    }
+
     /// The hottest metal that a pass meets ahead of the torch: index of layer and pass, °C.
     pub fn hottest_ahead(&self) -> Option<(usize, usize, f64)> {
         let ahead = self.layers.iter().enumerate().flat_map(|(layer, heat)| {
@@ -63,7 +92,8 @@ pub fn plate(layers: &[Layer], settings: &HeatSettings, weld: &WeldSettings) -> 
 }
 
 /// Builds all layers; within the limits of the settings if they have some, which changes waits, order and starts of the
-/// layers, and otherwise with the waits that they have. `None` if there is nothing to build.
+/// layers, and otherwise with the waits that they have. `None` if there is nothing to build. Where a part is welded as several
+/// bodies, each begins on a plate of its own, which is cold.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -73,22 +103,22 @@ pub fn history(
     weld: &WeldSettings,
     task: &Task,
 ) -> Result<Option<History>, Cancelled> {
-    let Some(mut build) = plate(layers, settings, weld) else { return Ok(None) };
-    let count = layers.len();
-    let mut heats = Vec::with_capacity(count);
-    for (i, layer) in layers.iter_mut().enumerate() {
-        task.step(Stage::Heat, i as f64 / count as f64)?;
-        heats.push(build.layer_within_limits(layer));
+    let (count, mut done, mut all) = (layers.len(), 0, None::<History>);
+    let several = layers.first().zip(layers.last()).is_some_and(|(first, last)| first.body != last.body);
+    let settings = &HeatSettings { over: settings.over.filter(|_| !several), ..settings.clone() };
+    for body in layers.chunk_by_mut(|a, b| a.body == b.body) {
+        let Some(mut build) = plate(body, settings, weld) else { continue };
+        let (mut heats, first) = (Vec::with_capacity(body.len()), if several { body[0].index } else { 0 });
+        for layer in body {
+            task.step(Stage::Heat, done as f64 / count as f64)?;
+            // A body knows its own layers only.
+            layer.index -= first;
+            heats.push(build.layer_within_limits(layer));
+            layer.index += first;
+            done += 1;
+        }
+        let own = History::of(heats, &build);
+        all = Some(all.map_or(own.clone(), |before| before.followed_by(own)));
     }
-    let body = build.body();
-    Ok(Some(History {
-        layers: heats,
-        spacing: build.spacing(),
-        seconds: build.seconds(),
-        supplied: body.supplied(),
-        lost: body.lost(),
-        held: body.energy(),
-        voxels: body.grid().len(),
-        voxel: build.voxel(),
-    }))
+    Ok(all)
 }
