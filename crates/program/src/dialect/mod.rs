@@ -7,7 +7,7 @@
 //! | --- | --- |
 //! | `mod.rs` | the row [`DIALECT`](krl::DIALECT), and how the [section](Section) begins a writer |
 //! | `section.rs` | the keys of the profile, with their limits |
-//! | `write.rs` | the [writer](writing::Writer) |
+//! | `write.rs` | the syntax, from which `writing::frame` makes a [writer](writing::Writer) |
 //! | `read.rs` | the reader |
 //!
 //! [`writing`] and [`reading`] hold what the dialects share. Users' own dialects, folders of templates, are written by

@@ -5,12 +5,12 @@
 //! moves inside a pass are CNT. Lines are numbered from 1; the second position of an arc is on a line without a number.
 
 use super::section::{Fanuc, FanucSpeed};
+use crate::dialect::writing::frame::{self, Frame, Part, Piece, SUFFIX, Skippable, Syntax};
 use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
+use crate::dialect::writing::{Chunk, Job, ascii, upper_name, waits};
 use crate::number::fixed;
-use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
-use bead_plan::layer::Extent;
-use bead_plan::process::Process;
+use crate::program::{Attitude, Instruction, Weave};
+use bead_plan::pass::PassKind;
 use glam::DVec3;
 use std::fmt::Write as _;
 
@@ -26,36 +26,23 @@ const MAX_REMARK: usize = 32;
 /// Longest wait of one line, s.
 const MAX_WAIT: f64 = 300.0;
 
-/// Room for `_L`, and for the number of a split layer.
-const SUFFIX: usize = 2 + 4;
-
 /// Writes FANUC.
 pub(super) struct FanucTp {
-    name: String,
-    comment: String,
-    supplies: Vec<String>,
+    frame: Frame,
     fanuc: Fanuc,
-    program: ProgramSettings,
     weave: Option<Weave>,
-    values: Values,
     /// W, P, R of the torch, °.
     orientation: [f64; 3],
-    travel_speed: f64,
-    nominal_speed: f64,
-    wire_feed_speed: f64,
-    digits: usize,
     main: Program,
-    /// Label after the current pass.
-    skip: Option<usize>,
-    /// Label after the moves from the previous pass.
-    way: Option<usize>,
+    /// Labels where open branches end.
+    open: Vec<usize>,
     /// How the torch swings at the moment, as it is written.
     weaving: Option<String>,
 }
 
 /// Lines and positions of one program.
 #[derive(Default)]
-struct Program {
+pub(super) struct Program {
     lines: String,
     count: usize,
     positions: String,
@@ -100,73 +87,10 @@ impl Program {
 impl FanucTp {
     /// Begins the program of a part and names it after the part.
     pub(super) fn new(job: &Job<'_>, fanuc: Fanuc) -> Self {
-        let name = upper_name(&job.part);
-        let values = Values::new(&name, job);
-        let Process { deposition_speed: nominal_speed, wire_feed_speed, .. } = job.weld.process;
-        let (travel_speed, orientation) = (job.weld.travel.speed, fanuc.orientation);
         let comment = ascii(&job.part).replace('"', "_");
-        let main = Program::default();
-        let (supplies, program, weave) = (job.supplies(MAX_REMARK), job.program.clone(), job.weave());
-        Self {
-            name,
-            comment,
-            supplies,
-            fanuc,
-            program,
-            weave,
-            values,
-            orientation,
-            travel_speed,
-            nominal_speed,
-            wire_feed_speed,
-            digits: 3,
-            main,
-            skip: None,
-            way: None,
-            weaving: None,
-        }
-    }
-
-    fn lines(&self, program: &mut Program, template: &[String]) {
-        self.values.expand(template).for_each(|line| program.line(&format!("  {line}")));
-    }
-
-    /// Begins what a program begun later than `number` leaves out; returns the label where it continues.
-    fn begin_skippable(&self, program: &mut Program, number: usize) -> Option<usize> {
-        let label = self.program.restart.then(|| program.label())?;
-        program.line(&format!("  IF R[{}]>{number},JMP LBL[{label}]", self.fanuc.restart_register));
-        Some(label)
-    }
-
-    /// Lines that a program begun later than `number` leaves out.
-    fn skippable(&self, program: &mut Program, number: usize, lines: &[String]) {
-        if lines.is_empty() {
-            return;
-        }
-        let label = self.begin_skippable(program, number);
-        self.lines(program, lines);
-        label.into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
-    }
-
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
-    fn pass_start(&mut self, program: &mut Program, pass: usize, above: DVec3) {
-        let number = self.values.set_pass(pass);
-        self.skip = self.begin_skippable(program, number);
-        if self.program.restart {
-            let (register, label, behind) = (self.fanuc.restart_register, program.label(), program.label());
-            program.line(&format!("  IF R[{register}]=0,JMP LBL[{label}]"));
-            self.instruction(program, Instruction::Approach { to: above });
-            program.line(&format!("  R[{register}]=0"));
-            program.line(&format!("  JMP LBL[{behind}]"));
-            program.line(&format!("  LBL[{label}]"));
-            self.way = Some(behind);
-        }
-    }
-
-    /// The torch is above the start of the pass, whichever way it came.
-    fn above(&mut self, program: &mut Program) {
-        self.way.take().into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
-        self.lines(program, &self.fanuc.hooks.pass_start);
+        let frame = Frame { comment, ..Frame::new(job, upper_name(&job.part), MAX_REMARK, &fanuc) };
+        let (orientation, main) = (fanuc.orientation, Program::default());
+        Self { frame, fanuc, weave: job.weave(), orientation, main, open: Vec::new(), weaving: None }
     }
 
     /// Swings the torch so that a period has the same length at any speed (mm/s).
@@ -176,21 +100,15 @@ impl FanucTp {
         let dwell = fixed(weave.dwell, 3);
         let wanted = format!("[{hertz}Hz,{amplitude}mm,{dwell}s,{dwell}s]");
         if self.weaving.as_ref() != Some(&wanted) {
-            self.weave_end(program);
+            self.end_weave(program);
             program.line(&format!("  Weave Sine{wanted}"));
             self.weaving = Some(wanted);
         }
     }
 
-    fn weave_end(&mut self, program: &mut Program) {
-        if self.weaving.take().is_some() {
-            program.line("  Weave End");
-        }
-    }
-
     /// The height to be added to a layer, which is set in its program.
     fn offset(&self, program: &mut Program) {
-        if self.program.layer_offsets {
+        if self.frame.program.layer_offsets {
             let register = self.fanuc.offset_register;
             program.line("  !mm added to this layer");
             program.line(&format!("  PR[{register}]=LPOS-LPOS"));
@@ -201,7 +119,7 @@ impl FanucTp {
 
     /// What ends a motion where its layer has a height to be added.
     fn offset_word(&self) -> &'static str {
-        if self.program.layer_offsets { " Offset" } else { "" }
+        if self.frame.program.layer_offsets { " Offset" } else { "" }
     }
 
     fn frames(&self, program: &mut Program) {
@@ -228,138 +146,141 @@ impl FanucTp {
 
     fn speed(&self, speed: f64) -> String {
         match self.fanuc.speed {
-            FanucSpeed::WeldSpeed if (speed - self.nominal_speed).abs() < 1e-9 => "WELD_SPEED".to_owned(),
+            FanucSpeed::WeldSpeed if (speed - self.frame.process.deposition_speed).abs() < 1e-9 => {
+                "WELD_SPEED".to_owned()
+            }
             FanucSpeed::CentimetresPerMinute => format!("{}cm/min", fixed((speed * 6.0).max(0.1), 1)),
             _ => format!("{}mm/sec", fixed(speed.max(0.1), 1)),
         }
     }
-
-    fn instruction(&mut self, program: &mut Program, instruction: Instruction) {
-        if let Some(attitude) = instruction.attitude() {
-            self.orientation = orientation::xyz(self.fanuc.orientation, Turn::Attitude(attitude));
-        }
-        match instruction {
-            Instruction::Approach { to } => {
-                let number = self.pose(program, to);
-                program.line(&format!("J P[{number}] {}% FINE{}", fixed(self.fanuc.home_speed, 0), self.offset_word()));
-            }
-            Instruction::Travel { to } | Instruction::Retract { to } => {
-                let number = self.pose(program, to);
-                // L takes at most 2000 mm/sec.
-                program.line(&format!(
-                    "L P[{number}] {}mm/sec FINE{}",
-                    fixed(self.travel_speed.clamp(0.1, 2000.0), 1),
-                    self.offset_word()
-                ));
-            }
-            Instruction::ArcOn { pass, kind } => {
-                program.line(&format!("  !pass {pass} {}", kind.name()));
-                self.lines(program, &self.fanuc.arc_on);
-                self.lines(program, &self.fanuc.hooks.arc_established);
-            }
-            Instruction::Weld { to, circle, speed, last, .. } => {
-                self.weave_at(program, speed);
-                let via = circle.map(|circle| self.pose(program, circle.via));
-                let number = self.pose(program, to);
-                let end = if last { "FINE".to_owned() } else { format!("CNT{}", self.fanuc.continuity) };
-                let end = format!("P[{number}] {} {end}{}", self.speed(speed), self.offset_word());
-                match via {
-                    Some(via) => program.line(&format!("C P[{via}]\r\n    :  {end}")),
-                    None => program.line(&format!("L {end}")),
-                }
-            }
-            Instruction::WireFeed { ratio } => {
-                self.values.set_wire_feed(ratio, self.wire_feed_speed);
-                self.lines(program, &self.fanuc.wire_feed);
-            }
-            Instruction::Crater { seconds, ratio } => {
-                if let Some(ratio) = ratio {
-                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
-                    self.lines(program, crater_lines(&self.fanuc.crater, &self.fanuc.wire_feed));
-                }
-                wait(program, seconds);
-            }
-            Instruction::Dwell { seconds } => wait(program, seconds),
-            Instruction::ArcOff { .. } => {
-                self.weave_end(program);
-                self.lines(program, &self.fanuc.hooks.before_arc_off);
-                self.lines(program, &self.fanuc.arc_off);
-            }
-            Instruction::PassStart { pass, above, .. } => self.pass_start(program, pass, above),
-            Instruction::Above => self.above(program),
-            Instruction::Turn { .. } => {}
-            Instruction::PassEnd => {
-                self.lines(program, &self.fanuc.hooks.pass_end);
-                self.skip.take().into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
-            }
-        }
-    }
 }
 
-fn wait(program: &mut Program, seconds: f64) {
-    waits(seconds, MAX_WAIT).for_each(|s| program.line(&format!("  WAIT {}(sec)", fixed(s, 2))));
-}
+impl Syntax for FanucTp {
+    type Text = Program;
 
-impl Writer for FanucTp {
-    fn weaves(&self) -> bool {
-        self.weave.is_some()
+    fn frame(&self) -> &Frame {
+        &self.frame
     }
 
-    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
-        self.digits = extent.layers.to_string().len().max(3);
-        self.name.truncate(MAX_NAME - SUFFIX - self.digits);
-        self.values.set("layers", extent.layers);
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
+    }
+
+    fn longest_name(&self, digits: usize) -> usize {
+        MAX_NAME - SUFFIX - digits
+    }
+
+    fn most_moves(&self) -> usize {
+        self.fanuc.max_points
+    }
+
+    /// The main program is written at its end, when the number of its lines is known.
+    fn begin_main(&mut self) -> Vec<Chunk> {
         let mut main = Program::default();
-        self.supplies.iter().for_each(|line| main.line(&format!("  !{line}")));
-        if self.program.restart {
+        self.frame.supplies.iter().for_each(|line| main.line(&format!("  !{line}")));
+        if self.frame.program.restart {
             main.line("  !0, or layer*10000+pass");
             main.line(&format!("  R[{}]=0", self.fanuc.restart_register));
         }
         self.frames(&mut main);
         self.home(&mut main);
-        self.lines(&mut main, &self.fanuc.start);
-        self.lines(&mut main, &self.fanuc.hooks.watch);
+        frame::start(self, &mut main);
         self.main = main;
         Vec::new()
     }
 
-    fn layer(&mut self, layer: &LayerProgram) -> Vec<Chunk> {
-        if layer.instructions.is_empty() {
-            return Vec::new();
-        }
-        self.values.set_layer(layer);
-        let mut chunks = Vec::new();
-        let parts = split::passes(&layer.instructions, self.fanuc.max_points);
-        let count = parts.len();
-        for (i, part) in parts.into_iter().enumerate() {
-            let more = if i == 0 { String::new() } else { format!("_{}", i + 1) };
-            let name = format!("{}_L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
-            let mut program = Program::default();
-            self.frames(&mut program);
-            self.offset(&mut program);
-            if i == 0 {
-                program.line(&format!("  !layer {}, z {} mm", layer.index + 1, fixed(layer.z, 3)));
-                let lines = self.fanuc.hooks.before_layer(&self.fanuc.layer_start, layer.index, &self.program);
-                self.skippable(&mut program, self.values.last_number(), &lines);
-            }
-            part.iter().for_each(|&instruction| self.instruction(&mut program, instruction));
-            if i + 1 == count {
-                self.skippable(&mut program, self.values.last_number(), &self.fanuc.hooks.layer_end);
-            }
-            self.main.line(&format!("  CALL {name}"));
-            chunks.push(Chunk {
-                file: format!("{name}.ls"),
-                text: program.text(&name, &format!("LAYER {}", layer.index + 1)),
-            });
-        }
-        chunks
+    fn end_main(&mut self) -> Vec<Chunk> {
+        let mut main = std::mem::take(&mut self.main);
+        frame::end(self, &mut main);
+        self.home(&mut main);
+        let Frame { name, comment, .. } = &self.frame;
+        vec![Chunk { file: format!("{name}.ls"), text: main.text(name, comment) }]
     }
 
-    fn end(&mut self) -> Vec<Chunk> {
-        let mut main = std::mem::take(&mut self.main);
-        self.lines(&mut main, &self.fanuc.hooks.all_off);
-        self.lines(&mut main, &self.fanuc.end);
-        self.home(&mut main);
-        vec![Chunk { file: format!("{}.ls", self.name), text: main.text(&self.name, &self.comment) }]
+    fn part(&mut self, part: &Part, moves: &[Instruction]) -> Vec<Chunk> {
+        let (mut program, layer) = (Program::default(), part.layer + 1);
+        self.frames(&mut program);
+        self.offset(&mut program);
+        if part.first {
+            program.line(&format!("  !layer {layer}, z {} mm", fixed(part.z, 3)));
+        }
+        frame::body(self, &mut program, part, moves);
+        let name = self.name_of(part);
+        vec![Chunk { file: format!("{name}.ls"), text: program.text(&name, &format!("LAYER {layer}")) }]
+    }
+
+    fn call(&mut self, part: &Part) -> Vec<Chunk> {
+        self.main.line(&format!("  CALL {}", self.name_of(part)));
+        Vec::new()
+    }
+
+    fn line(&mut self, program: &mut Program, line: &str) {
+        program.line(&format!("  {line}"));
+    }
+
+    fn begin_skippable(&mut self, program: &mut Program, what: Skippable) {
+        let label = program.label();
+        program.line(&format!("  IF R[{}]>{},JMP LBL[{label}]", self.fanuc.restart_register, what.number()));
+        self.open.push(label);
+    }
+
+    fn end_skippable(&mut self, program: &mut Program) {
+        self.open.pop().into_iter().for_each(|label| program.line(&format!("  LBL[{label}]")));
+    }
+
+    fn begin_way(&mut self, program: &mut Program, _number: usize, above: DVec3) {
+        let (register, label, behind) = (self.fanuc.restart_register, program.label(), program.label());
+        program.line(&format!("  IF R[{register}]=0,JMP LBL[{label}]"));
+        self.approach(program, above);
+        program.line(&format!("  R[{register}]=0"));
+        program.line(&format!("  JMP LBL[{behind}]"));
+        program.line(&format!("  LBL[{label}]"));
+        self.open.push(behind);
+    }
+
+    fn stand(&mut self, attitude: Attitude) {
+        self.orientation = orientation::xyz(self.fanuc.orientation, Turn::Attitude(attitude));
+    }
+
+    fn approach(&mut self, program: &mut Program, to: DVec3) {
+        let number = self.pose(program, to);
+        program.line(&format!("J P[{number}] {}% FINE{}", fixed(self.fanuc.home_speed, 0), self.offset_word()));
+    }
+
+    fn travel(&mut self, program: &mut Program, to: DVec3) {
+        let number = self.pose(program, to);
+        // L takes at most 2000 mm/sec.
+        let speed = fixed(self.frame.travel_speed.clamp(0.1, 2000.0), 1);
+        program.line(&format!("L P[{number}] {speed}mm/sec FINE{}", self.offset_word()));
+    }
+
+    fn pass(&mut self, program: &mut Program, pass: usize, kind: PassKind) {
+        program.line(&format!("  !pass {pass} {}", kind.name()));
+    }
+
+    fn end_weave(&mut self, program: &mut Program) {
+        if self.weaving.take().is_some() {
+            program.line("  Weave End");
+        }
+    }
+
+    fn weld(&mut self, program: &mut Program, piece: Piece, _next: &[Instruction]) {
+        self.weave_at(program, piece.speed);
+        let via = piece.circle.map(|circle| self.pose(program, circle.via));
+        let number = self.pose(program, piece.to);
+        let end = if piece.last { "FINE".to_owned() } else { format!("CNT{}", self.fanuc.continuity) };
+        let end = format!("P[{number}] {} {end}{}", self.speed(piece.speed), self.offset_word());
+        match via {
+            Some(via) => program.line(&format!("C P[{via}]\r\n    :  {end}")),
+            None => program.line(&format!("L {end}")),
+        }
+    }
+
+    fn wait(&mut self, program: &mut Program, seconds: f64) {
+        waits(seconds, MAX_WAIT).for_each(|s| program.line(&format!("  WAIT {}(sec)", fixed(s, 2))));
+    }
+
+    fn weaves(&self) -> bool {
+        self.weave.is_some()
     }
 }

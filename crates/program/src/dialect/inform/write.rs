@@ -6,11 +6,12 @@
 //! point separates an arc from the next.
 
 use super::section::{Inform, InformSpeed};
+use crate::dialect::writing::frame::{self, Frame, Part, Piece, Skippable, Syntax};
 use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::writing::{Chunk, Job, Values, Writer, ascii, crater_lines, split, upper_name, waits};
+use crate::dialect::writing::{Chunk, Job, ascii, upper_name, waits};
 use crate::number::fixed;
-use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
-use bead_plan::layer::Extent;
+use crate::program::{Attitude, Instruction, Weave};
+use bead_plan::pass::PassKind;
 use glam::DVec3;
 use std::fmt::Write as _;
 
@@ -25,32 +26,22 @@ const SUFFIX: usize = 2;
 
 /// Writes INFORM.
 pub(super) struct YaskawaInform {
-    name: String,
-    comment: String,
-    supplies: Vec<String>,
+    frame: Frame,
     inform: Inform,
-    program: ProgramSettings,
     weave: Option<Weave>,
-    values: Values,
     /// Rx, Ry, Rz of the torch, °.
     orientation: [f64; 3],
-    travel_speed: f64,
-    wire_feed_speed: f64,
-    digits: usize,
-    /// Instructions of the main job so far.
-    main: String,
+    main: JobText,
     at: DVec3,
     /// Whether the last move was along an arc.
     in_arc: bool,
-    /// Label after the current pass.
-    skip: Option<usize>,
-    /// Label after the moves from the previous pass.
-    way: Option<usize>,
+    /// Labels where open branches end.
+    open: Vec<usize>,
 }
 
 /// Positions and instructions of one job.
 #[derive(Default)]
-struct JobText {
+pub(super) struct JobText {
     positions: String,
     count: usize,
     instructions: String,
@@ -73,77 +64,22 @@ impl JobText {
 impl YaskawaInform {
     /// Begins the program of a part and names the job after the part.
     pub(super) fn new(job: &Job<'_>, inform: Inform) -> Self {
-        let name = upper_name(&job.part);
-        let values = Values::new(&name, job);
-        let travel_speed = job.weld.travel.speed;
+        let frame = Frame::new(job, upper_name(&job.part), MAX_COMMENT, &inform);
         Self {
-            name,
-            comment: ascii(&job.part),
-            supplies: job.supplies(MAX_COMMENT),
+            frame: Frame { comment: ascii(&job.part), ..frame },
             orientation: inform.orientation,
             inform,
-            program: job.program.clone(),
             weave: job.weave(),
-            values,
-            travel_speed,
-            wire_feed_speed: job.weld.process.wire_feed_speed,
-            digits: 3,
-            main: String::new(),
+            main: JobText::default(),
             at: DVec3::ZERO,
             in_arc: false,
-            skip: None,
-            way: None,
+            open: Vec::new(),
         }
-    }
-
-    fn lines(&self, text: &mut String, template: &[String]) {
-        for line in self.values.expand(template) {
-            text.push_str(&line);
-            text.push_str("\r\n");
-        }
-    }
-
-    /// Begins what a program begun later than `number` leaves out; returns the label where it continues.
-    fn begin_skippable(&self, job: &mut JobText, number: usize) -> Option<usize> {
-        let label = self.program.restart.then(|| job.label())?;
-        job.line(&format!("JUMP *L{label} IF D{:03}>{number}", self.inform.restart_variable));
-        Some(label)
-    }
-
-    /// Lines that a program begun later than `number` leaves out.
-    fn skippable(&self, job: &mut JobText, number: usize, lines: &[String]) {
-        if lines.is_empty() {
-            return;
-        }
-        let label = self.begin_skippable(job, number);
-        self.lines(&mut job.instructions, lines);
-        label.into_iter().for_each(|label| job.line(&format!("*L{label}")));
-    }
-
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
-    fn pass_start(&mut self, job: &mut JobText, pass: usize, above: DVec3) {
-        let number = self.values.set_pass(pass);
-        self.skip = self.begin_skippable(job, number);
-        if self.program.restart {
-            let (variable, label, behind) = (self.inform.restart_variable, job.label(), job.label());
-            job.line(&format!("JUMP *L{label} IF D{variable:03}=0"));
-            self.instruction(job, Instruction::Approach { to: above });
-            job.line(&format!("SET D{variable:03} 0"));
-            job.line(&format!("JUMP *L{behind}"));
-            job.line(&format!("*L{label}"));
-            self.way = Some(behind);
-        }
-    }
-
-    /// The torch is above the start of the pass, whichever way it came.
-    fn above(&mut self, job: &mut JobText) {
-        self.way.take().into_iter().for_each(|label| job.line(&format!("*L{label}")));
-        self.lines(&mut job.instructions, &self.inform.hooks.pass_start);
     }
 
     /// The height to be added to a layer, which is set in its job, µm; all moves up to SFTOF are shifted by it.
     fn offset(&self, job: &mut JobText) {
-        if self.program.layer_offsets {
+        if self.frame.program.layer_offsets {
             let (variable, frame) = (self.inform.offset_variable, self.inform.user_frame);
             job.line("'UM ADDED TO THIS LAYER");
             job.line(&format!("SUB P{variable:03} P{variable:03}"));
@@ -153,7 +89,7 @@ impl YaskawaInform {
     }
 
     fn offset_end(&self, job: &mut JobText) {
-        if self.program.layer_offsets {
+        if self.frame.program.layer_offsets {
             job.line("SFTOF");
         }
     }
@@ -182,62 +118,19 @@ impl YaskawaInform {
         (self.at, self.in_arc) = (to, word == "MOVC");
     }
 
-    fn instruction(&mut self, job: &mut JobText, instruction: Instruction) {
-        if let Some(attitude) = instruction.attitude() {
-            self.orientation = orientation::xyz(self.inform.orientation, Turn::Attitude(attitude));
+    /// Three MOVC from where the torch is.
+    fn arc(&mut self, job: &mut JobText, via: DVec3, to: DVec3, speed: f64, level: u32) {
+        let between = self.inform.position_level;
+        if self.in_arc {
+            self.motion(job, "MOVL", self.at, speed, between);
         }
-        match instruction {
-            Instruction::Approach { to } => {
-                let pose = self.pose(job, to);
-                job.line(&format!("MOVJ {pose} VJ={} PL=0", fixed(self.inform.home_speed, 2)));
-                (self.at, self.in_arc) = (to, false);
-            }
-            Instruction::Travel { to } | Instruction::Retract { to } => {
-                self.motion(job, "MOVL", to, self.travel_speed, 0);
-            }
-            Instruction::ArcOn { pass, kind } => {
-                job.line(&format!("'PASS {pass} {}", kind.name().to_uppercase()));
-                self.lines(&mut job.instructions, &self.inform.arc_on);
-                self.lines(&mut job.instructions, &self.inform.hooks.arc_established);
-                self.weave.iter().for_each(|weave| job.line(&format!("WVON WEV#({})", weave.file)));
-            }
-            Instruction::Weld { to, circle, speed, last, .. } => {
-                let level = if last { 0 } else { self.inform.position_level };
-                let Some(circle) = circle else { return self.motion(job, "MOVL", to, speed, level) };
-                if self.in_arc {
-                    self.motion(job, "MOVL", self.at, speed, self.inform.position_level);
-                }
-                for (to, level) in
-                    [(self.at, self.inform.position_level), (circle.via, self.inform.position_level), (to, level)]
-                {
-                    self.motion(job, "MOVC", to, speed, level);
-                }
-            }
-            Instruction::WireFeed { ratio } => {
-                self.values.set_wire_feed(ratio, self.wire_feed_speed);
-                self.lines(&mut job.instructions, &self.inform.wire_feed);
-            }
-            Instruction::Crater { seconds, ratio } => {
-                if let Some(ratio) = ratio {
-                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
-                    self.lines(&mut job.instructions, crater_lines(&self.inform.crater, &self.inform.wire_feed));
-                }
-                wait(job, seconds);
-            }
-            Instruction::Dwell { seconds } => wait(job, seconds),
-            Instruction::ArcOff { .. } => {
-                self.weave.iter().for_each(|_| job.line("WVOF"));
-                self.lines(&mut job.instructions, &self.inform.hooks.before_arc_off);
-                self.lines(&mut job.instructions, &self.inform.arc_off);
-            }
-            Instruction::PassStart { pass, above, .. } => self.pass_start(job, pass, above),
-            Instruction::Above => self.above(job),
-            Instruction::Turn { .. } => {}
-            Instruction::PassEnd => {
-                self.lines(&mut job.instructions, &self.inform.hooks.pass_end);
-                self.skip.take().into_iter().for_each(|label| job.line(&format!("*L{label}")));
-            }
+        for (to, level) in [(self.at, between), (via, between), (to, level)] {
+            self.motion(job, "MOVC", to, speed, level);
         }
+    }
+
+    fn go_home(&self, position: usize) -> String {
+        format!("MOVJ C{position:05} VJ={}", fixed(self.inform.home_speed, 2))
     }
 
     /// A job in the user frame.
@@ -261,71 +154,132 @@ impl YaskawaInform {
     }
 }
 
-fn wait(job: &mut JobText, seconds: f64) {
-    waits(seconds, MAX_WAIT).for_each(|s| job.line(&format!("TIMER T={}", fixed(s, 2))));
-}
+impl Syntax for YaskawaInform {
+    type Text = JobText;
 
-impl Writer for YaskawaInform {
-    fn weaves(&self) -> bool {
-        self.weave.is_some()
+    fn frame(&self) -> &Frame {
+        &self.frame
     }
 
-    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
-        self.digits = extent.layers.to_string().len().max(3);
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
+    }
+
+    fn longest_name(&self, digits: usize) -> usize {
         // Where names may be longer, those of split layers fit too: "-L001-2".
         let more = if self.inform.max_name > 16 { 4 } else { 2 };
-        self.name.truncate((self.inform.max_name - SUFFIX - self.digits).saturating_sub(more).max(1));
-        self.values.set("layers", extent.layers);
-        let mut main = String::new();
-        self.supplies.iter().for_each(|line| main.push_str(&format!("'{line}\r\n")));
-        if self.program.restart {
-            let variable = self.inform.restart_variable;
-            main.push_str(&format!("'0, OR LAYER*10000+PASS\r\nSET D{variable:03} 0\r\n"));
+        (self.inform.max_name - SUFFIX - digits).saturating_sub(more).max(1)
+    }
+
+    fn most_moves(&self) -> usize {
+        self.inform.max_points
+    }
+
+    fn name_of(&self, part: &Part) -> String {
+        format!("{}-L{}", self.frame.name, part.number.replace('_', "-"))
+    }
+
+    /// The main job is written at its end, when the number of its positions is known.
+    fn begin_main(&mut self) -> Vec<Chunk> {
+        let pulses = self.inform.home.map(|pulse| pulse.to_string()).join(",");
+        let positions = format!("C00000={pulses}\r\nC00001={pulses}\r\n");
+        let mut main = JobText { positions, count: 2, ..JobText::default() };
+        main.line(&self.go_home(0));
+        self.frame.supplies.iter().for_each(|line| main.line(&format!("'{line}")));
+        if self.frame.program.restart {
+            main.line("'0, OR LAYER*10000+PASS");
+            main.line(&format!("SET D{:03} 0", self.inform.restart_variable));
         }
-        self.lines(&mut main, &self.inform.start);
-        self.lines(&mut main, &self.inform.hooks.watch);
+        frame::start(self, &mut main);
         self.main = main;
         Vec::new()
     }
 
-    fn layer(&mut self, layer: &LayerProgram) -> Vec<Chunk> {
-        if layer.instructions.is_empty() {
-            return Vec::new();
-        }
-        self.values.set_layer(layer);
-        let mut chunks = Vec::new();
-        let parts = split::passes(&layer.instructions, self.inform.max_points);
-        let count = parts.len();
-        for (i, part) in parts.into_iter().enumerate() {
-            let more = if i == 0 { String::new() } else { format!("-{}", i + 1) };
-            let name = format!("{}-L{:0digits$}{more}", self.name, layer.index + 1, digits = self.digits);
-            let mut job = JobText::default();
-            self.offset(&mut job);
-            if i == 0 {
-                let lines = self.inform.hooks.before_layer(&self.inform.layer_start, layer.index, &self.program);
-                self.skippable(&mut job, self.values.last_number(), &lines);
-            }
-            part.iter().for_each(|&instruction| self.instruction(&mut job, instruction));
-            if i + 1 == count {
-                self.skippable(&mut job, self.values.last_number(), &self.inform.hooks.layer_end);
-            }
-            self.offset_end(&mut job);
-            self.main.push_str(&format!("CALL JOB:{name}\r\n"));
-            chunks.push(self.relative(&name, &format!("LAYER {} Z {}", layer.index + 1, fixed(layer.z, 3)), &job));
-        }
-        chunks
+    fn end_main(&mut self) -> Vec<Chunk> {
+        let mut main = std::mem::take(&mut self.main);
+        frame::end(self, &mut main);
+        main.line(&self.go_home(1));
+        let head = format!("///TOOL {}\r\n///POSTYPE PULSE\r\n///PULSE\r\n", self.inform.tool);
+        vec![self.file(&self.frame.name, &self.frame.comment, &head, "SC,RW", &main)]
     }
 
-    fn end(&mut self) -> Vec<Chunk> {
-        let pulses = self.inform.home.map(|pulse| pulse.to_string()).join(",");
-        let go = |number: usize| format!("MOVJ C{number:05} VJ={}\r\n", fixed(self.inform.home_speed, 2));
-        let mut instructions = go(0) + &self.main;
-        self.lines(&mut instructions, &self.inform.hooks.all_off);
-        self.lines(&mut instructions, &self.inform.end);
-        instructions.push_str(&go(1));
-        let positions = format!("C00000={pulses}\r\nC00001={pulses}\r\n");
-        let main = JobText { positions, count: 2, instructions, labels: 0 };
-        let head = format!("///TOOL {}\r\n///POSTYPE PULSE\r\n///PULSE\r\n", self.inform.tool);
-        vec![self.file(&self.name, &self.comment, &head, "SC,RW", &main)]
+    fn part(&mut self, part: &Part, moves: &[Instruction]) -> Vec<Chunk> {
+        let mut job = JobText::default();
+        self.offset(&mut job);
+        frame::body(self, &mut job, part, moves);
+        self.offset_end(&mut job);
+        let comment = format!("LAYER {} Z {}", part.layer + 1, fixed(part.z, 3));
+        vec![self.relative(&self.name_of(part), &comment, &job)]
+    }
+
+    fn call(&mut self, part: &Part) -> Vec<Chunk> {
+        self.main.line(&format!("CALL JOB:{}", self.name_of(part)));
+        Vec::new()
+    }
+
+    fn line(&mut self, job: &mut JobText, line: &str) {
+        job.line(line);
+    }
+
+    fn begin_skippable(&mut self, job: &mut JobText, what: Skippable) {
+        let label = job.label();
+        job.line(&format!("JUMP *L{label} IF D{:03}>{}", self.inform.restart_variable, what.number()));
+        self.open.push(label);
+    }
+
+    fn end_skippable(&mut self, job: &mut JobText) {
+        self.open.pop().into_iter().for_each(|label| job.line(&format!("*L{label}")));
+    }
+
+    fn begin_way(&mut self, job: &mut JobText, _number: usize, above: DVec3) {
+        let (variable, label, behind) = (self.inform.restart_variable, job.label(), job.label());
+        job.line(&format!("JUMP *L{label} IF D{variable:03}=0"));
+        self.approach(job, above);
+        job.line(&format!("SET D{variable:03} 0"));
+        job.line(&format!("JUMP *L{behind}"));
+        job.line(&format!("*L{label}"));
+        self.open.push(behind);
+    }
+
+    fn stand(&mut self, attitude: Attitude) {
+        self.orientation = orientation::xyz(self.inform.orientation, Turn::Attitude(attitude));
+    }
+
+    fn approach(&mut self, job: &mut JobText, to: DVec3) {
+        let pose = self.pose(job, to);
+        job.line(&format!("MOVJ {pose} VJ={} PL=0", fixed(self.inform.home_speed, 2)));
+        (self.at, self.in_arc) = (to, false);
+    }
+
+    fn travel(&mut self, job: &mut JobText, to: DVec3) {
+        self.motion(job, "MOVL", to, self.frame.travel_speed, 0);
+    }
+
+    fn pass(&mut self, job: &mut JobText, pass: usize, kind: PassKind) {
+        job.line(&format!("'PASS {pass} {}", kind.name().to_uppercase()));
+    }
+
+    fn begin_weave(&mut self, job: &mut JobText) {
+        self.weave.iter().for_each(|weave| job.line(&format!("WVON WEV#({})", weave.file)));
+    }
+
+    fn end_weave(&mut self, job: &mut JobText) {
+        self.weave.iter().for_each(|_| job.line("WVOF"));
+    }
+
+    fn weld(&mut self, job: &mut JobText, piece: Piece, _next: &[Instruction]) {
+        let level = if piece.last { 0 } else { self.inform.position_level };
+        match piece.circle {
+            Some(circle) => self.arc(job, circle.via, piece.to, piece.speed, level),
+            None => self.motion(job, "MOVL", piece.to, piece.speed, level),
+        }
+    }
+
+    fn wait(&mut self, job: &mut JobText, seconds: f64) {
+        waits(seconds, MAX_WAIT).for_each(|s| job.line(&format!("TIMER T={}", fixed(s, 2))));
+    }
+
+    fn weaves(&self) -> bool {
+        self.weave.is_some()
     }
 }

@@ -7,12 +7,12 @@
 
 use super::section::{Rapid, RapidArc, RapidModules};
 use super::{data, names};
+use crate::dialect::writing::frame::{self, Frame, Part, Piece, SUFFIX, Skippable, Syntax};
 use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split};
+use crate::dialect::writing::{Chunk, Job, restart};
 use crate::number::fixed;
-use crate::program::{Instruction, LayerProgram, ProgramSettings, Weave};
-use bead_plan::layer::Extent;
-use bead_plan::process::Process;
+use crate::program::{Attitude, Instruction, LayerProgram, Weave};
+use bead_plan::pass::PassKind;
 use bead_plan::weld::retract_time;
 use glam::DVec3;
 
@@ -27,19 +27,14 @@ const ROUTINES: [&str; 5] = ["PROC ", "TRAP ", "FUNC ", "LOCAL PROC ", "LOCAL TR
 
 /// Writes RAPID.
 pub(super) struct AbbRapid {
-    name: String,
-    comment: String,
-    supplies: Vec<String>,
+    frame: Frame,
     rapid: Rapid,
-    program: ProgramSettings,
     weave: Option<Weave>,
-    process: Process,
-    values: Values,
-    travel_speed: f64,
     orientation: String,
     /// External axes of targets.
     axes: String,
-    digits: usize,
+    /// The data of the layer.
+    speeds: Speeds,
 }
 
 /// The speed of a weld and, where its wire feed is not the nominal one, its pace: the speed at which the nominal wire
@@ -53,133 +48,33 @@ impl AbbRapid {
     /// Begins the program of a part and names the module after the part.
     pub(super) fn new(job: &Job<'_>, rapid: Rapid) -> Self {
         let name = names::module_name(&job.part, 3, [&rapid.tool, &rapid.wobj]);
-        let comment = job.comment();
-        let values = Values::new(&name, job);
         let rapid = with_ends(rapid, job);
         let orientation = data::quaternion(&rapid.orientation);
         let axes = data::external_axes(job.program, job.program.table_angle, &rapid);
-        let (process, travel_speed) = (job.weld.process.clone(), job.weld.travel.speed);
-        let (supplies, program, weave) = (job.supplies(MAX_COMMENT), job.program.clone(), job.weave.cloned());
-        Self {
-            name,
-            comment,
-            supplies,
-            rapid,
-            program,
-            weave,
-            process,
-            values,
-            travel_speed,
-            orientation,
-            axes,
-            digits: 3,
-        }
-    }
-
-    fn numbered(&self, prefix: &str, index: usize) -> String {
-        format!("{prefix}{:0digits$}", index + 1, digits = self.digits)
+        let frame = Frame::new(job, name, MAX_COMMENT, &rapid);
+        Self { frame, rapid, weave: job.weave.cloned(), orientation, axes, speeds: Speeds::new() }
     }
 
     fn with_arc(&self) -> bool {
         self.rapid.arc == RapidArc::Instructions
     }
 
-    /// The module for one part of a layer (`part` counts from 0; `last` if no other follows), with the lines that run it.
-    fn module(
-        &mut self,
-        program: &LayerProgram,
-        (part, last): (usize, bool),
-        moves: &[Instruction],
-        speeds: &Speeds,
-        feed: &mut f64,
-    ) -> Vec<Chunk> {
-        let more = if part == 0 { String::new() } else { format!("_{}", part + 1) };
-        let named = |prefix: &str| format!("{}{more}", self.numbered(prefix, program.index));
-        let (module, routine) = (named(&format!("{}_L", self.name)), named("Layer"));
-        let mut text = format!("MODULE {module}\r\n  ! {}\r\n", self.comment);
-        text.reserve(moves.len() * 150);
-        let z = fixed(program.z, 3);
-        self.declare(&mut text, program.index, speeds);
-        text.push_str(&format!("  PROC {routine}()\r\n    ! layer {}, z {z} mm\r\n", program.index + 1));
-        if self.program.layer_offsets {
-            let shift = format!("PDispSet [[0,0,nDz{{{}}}],[1,0,0,0]];", program.index + 1);
-            statement(&mut text, &shift);
-        }
-        if part == 0 {
-            let lines = self.rapid.hooks.before_layer(&self.rapid.layer_start, program.index, &self.program);
-            self.skippable(&mut text, self.values.last_number(), &lines);
-        }
-        self.instructions(&mut text, moves, speeds, feed);
-        if last {
-            self.skippable(&mut text, self.values.last_number(), &self.rapid.hooks.layer_end);
-        }
-        text.push_str("  ENDPROC\r\nENDMODULE\r\n");
-        let listed = self.rapid.modules == RapidModules::Call;
-        let list = listed.then(|| self.pgf(format!("  <Module>{module}.mod</Module>\r\n"))).flatten();
-        let run = self.main(self.run(&module, &routine));
-        [run, Chunk { file: format!("{module}.mod"), text }].into_iter().chain(list).collect()
-    }
-
     fn main(&self, text: String) -> Chunk {
-        Chunk { file: format!("{}.mod", self.name), text }
+        Chunk { file: format!("{}.mod", self.frame.name), text }
     }
 
     fn pgf(&self, text: String) -> Option<Chunk> {
-        self.rapid.pgf.then(|| Chunk { file: format!("{}.pgf", self.name), text })
-    }
-
-    fn lines(&self, text: &mut String, template: &[String]) {
-        self.values.expand(template).for_each(|line| statement(text, &line));
-    }
-
-    /// Lines that a program begun later than `number` leaves out.
-    fn skippable(&self, text: &mut String, number: usize, lines: &[String]) {
-        if lines.is_empty() {
-            return;
-        }
-        self.begin_skippable(text, number);
-        self.lines(text, lines);
-        self.end_skippable(text);
-    }
-
-    fn begin_skippable(&self, text: &mut String, number: usize) {
-        if self.program.restart {
-            statement(text, &format!("IF {START}<={number} THEN"));
-        }
-    }
-
-    fn end_skippable(&self, text: &mut String) {
-        if self.program.restart {
-            statement(text, "ENDIF");
-        }
-    }
-
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
-    fn pass_start(&mut self, text: &mut String, pass: usize, above: DVec3) {
-        let number = self.values.set_pass(pass);
-        self.begin_skippable(text, number);
-        if self.program.restart {
-            statement(text, &format!("IF {START}>0 THEN"));
-            self.motion(text, "MoveJ", above, "vHome", false);
-            statement(text, &format!("{START}:=0;"));
-            statement(text, "ELSE");
-        }
-    }
-
-    /// The torch is above the start of the pass, whichever way it came.
-    fn above(&self, text: &mut String) {
-        self.end_skippable(text);
-        self.hook(text, &self.rapid.hooks.pass_start);
+        self.rapid.pgf.then(|| Chunk { file: format!("{}.pgf", self.frame.name), text })
     }
 
     /// The mechanical unit that turns under the part, if there is one.
     fn table(&self) -> Option<&str> {
-        self.rapid.table_unit.as_deref().filter(|_| self.program.has_table())
+        self.rapid.table_unit.as_deref().filter(|_| self.frame.program.has_table())
     }
 
     /// Activates the units that move along, and refuses a work object of the controller that does not turn with the table.
     fn units(&self, text: &mut String) {
-        let track = self.rapid.track_unit.as_deref().filter(|_| self.program.linear_axis.is_some());
+        let track = self.rapid.track_unit.as_deref().filter(|_| self.frame.program.linear_axis.is_some());
         track.into_iter().chain(self.table()).for_each(|unit| statement(text, &format!("ActUnit {unit};")));
         if let Some(unit) = self.table().filter(|_| self.rapid.part_frame.is_none()) {
             let wobj = &self.rapid.wobj;
@@ -193,16 +88,9 @@ impl AbbRapid {
         }
     }
 
-    /// Lines for when the torch stands still, if there are any.
-    fn hook(&self, text: &mut String, lines: &[String]) {
-        if !lines.is_empty() {
-            self.switch(text, lines);
-        }
-    }
-
     /// The speed as it is written, thousandths of a mm/s: the nominal one plus or minus whole steps.
     fn rounded(&self, speed: f64) -> u64 {
-        let (nominal, step) = (self.process.deposition_speed, self.rapid.speed_step);
+        let (nominal, step) = (self.frame.process.deposition_speed, self.rapid.speed_step);
         let near = nominal + ((speed - nominal) / step).round() * step;
         let written = if near >= 1e-3 { near } else { speed };
         (written * 1000.0).round().max(1.0) as u64
@@ -210,11 +98,11 @@ impl AbbRapid {
 
     /// The data for a speed and the fraction `feed` of the nominal wire feed; plain moves set no wire feed.
     fn datum(&self, speed: f64, feed: f64) -> Datum {
-        let pace = self.process.deposition_speed / feed;
+        let pace = self.frame.process.deposition_speed / feed;
         (self.rounded(speed), (self.with_arc() && feed != 1.0).then(|| self.rounded(pace)))
     }
 
-    fn speeds(&self, program: &LayerProgram) -> Speeds {
+    fn speeds_of(&self, program: &LayerProgram) -> Speeds {
         let (mut speeds, mut feed) = (Speeds::new(), 1.0);
         for instruction in &program.instructions {
             match *instruction {
@@ -231,17 +119,14 @@ impl AbbRapid {
         speeds
     }
 
-    fn declare(&self, text: &mut String, layer: usize, speeds: &Speeds) {
-        let process = self.process.at_layer(layer);
-        for (i, &(speed, pace)) in speeds.iter().enumerate() {
+    fn declare(&self, text: &mut String, layer: usize) {
+        let nominal = &self.frame.process;
+        let process = nominal.at_layer(layer);
+        for (i, &(speed, pace)) in self.speeds.iter().enumerate() {
             let speed = speed as f64 / 1000.0;
             let declaration = if self.with_arc() {
-                let feed = pace.map_or(1.0, |pace| self.process.deposition_speed * 1000.0 / pace as f64);
-                format!(
-                    "LOCAL PERS welddata wd{}:={};",
-                    i + 1,
-                    data::weld(speed, feed, &process, &self.process, &self.rapid)
-                )
+                let feed = pace.map_or(1.0, |pace| nominal.deposition_speed * 1000.0 / pace as f64);
+                format!("LOCAL PERS welddata wd{}:={};", i + 1, data::weld(speed, feed, &process, nominal, &self.rapid))
             } else {
                 format!("LOCAL CONST speeddata vd{}:={};", i + 1, data::speed(speed, &self.rapid))
             };
@@ -253,10 +138,10 @@ impl AbbRapid {
         }
     }
 
-    /// Number of the data for a speed and a wire feed, from 1.
-    fn number(&self, speeds: &Speeds, speed: f64, feed: f64) -> usize {
-        let wanted = self.datum(speed, feed);
-        speeds.iter().position(|&s| s == wanted).map_or(1, |i| i + 1)
+    /// Number of the data for a speed with the wire feed as it is, from 1.
+    fn number(&self, speed: f64) -> usize {
+        let wanted = self.datum(speed, self.frame.feed);
+        self.speeds.iter().position(|&s| s == wanted).map_or(1, |i| i + 1)
     }
 
     /// `word target,between,zone,tool\WObj:=wobj;`
@@ -283,112 +168,17 @@ impl AbbRapid {
         statement(text, &format!("MoveAbsJ jHome,vHome,fine,{}\\WObj:={};", self.rapid.tool, self.rapid.wobj));
     }
 
-    /// `feed` is the fraction of the nominal wire feed that was set last.
-    fn instructions(&mut self, text: &mut String, all: &[Instruction], speeds: &Speeds, feed: &mut f64) {
-        for (i, &instruction) in all.iter().enumerate() {
-            if let Some(attitude) = instruction.attitude() {
-                self.orientation =
-                    data::quaternion(&orientation::quaternion(self.rapid.orientation, Turn::Attitude(attitude)));
-                if attitude.table.is_some() {
-                    self.axes = data::external_axes(&self.program, attitude.table, &self.rapid);
-                }
-            }
-            match (instruction, all.get(i + 1)) {
-                // ArcLStart itself moves there.
-                (Instruction::Travel { .. }, Some(Instruction::ArcOn { .. })) if self.with_arc() => {}
-                (Instruction::Approach { to }, _) => self.motion(text, "MoveJ", to, "vHome", false),
-                (Instruction::Travel { to } | Instruction::Retract { to }, _) => {
-                    self.motion(text, "MoveL", to, "vTravel", false)
-                }
-                (Instruction::ArcOn { pass, kind }, next) => {
-                    statement(text, &format!("! pass {pass} {}", kind.name()));
-                    let before = i.checked_sub(1).and_then(|before| all.get(before));
-                    let first = next.and_then(|next| match *next {
-                        Instruction::Weld { speed, .. } => Some(self.number(speeds, speed, *feed)),
-                        _ => None,
-                    });
-                    self.arc_on(text, before, first);
-                }
-                (Instruction::WireFeed { ratio }, _) => {
-                    *feed = ratio;
-                    self.wire_feed(text, ratio);
-                }
-                (Instruction::Weld { to, circle, speed, last, .. }, _) => {
-                    self.weld(text, circle.map(|c| c.via), to, self.number(speeds, speed, *feed), last);
-                }
-                // The seamdata fill the crater.
-                (Instruction::Crater { .. }, _) if self.with_arc() => {}
-                (Instruction::Crater { seconds, ratio }, _) => {
-                    if let Some(ratio) = ratio {
-                        self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
-                        self.switch(text, crater_lines(&self.rapid.crater, &self.rapid.wire_feed));
-                    }
-                    wait(text, seconds);
-                }
-                (Instruction::Dwell { seconds }, _) => wait(text, seconds),
-                (Instruction::PassStart { pass, above, .. }, _) => self.pass_start(text, pass, above),
-                (Instruction::Above, _) => self.above(text),
-                (Instruction::Turn { .. }, _) => {}
-                (Instruction::PassEnd, _) => {
-                    self.hook(text, &self.rapid.hooks.pass_end);
-                    self.end_skippable(text);
-                }
-                (Instruction::ArcOff { .. }, _) => self.arc_off(text),
-            }
+    /// Moves to the start of a pass and strikes the arc, with the data of the first piece.
+    fn arc_start(&self, text: &mut String, before: Option<&Instruction>, next: Option<&Instruction>) {
+        if let (Some(to), Some(&Instruction::Weld { speed, .. })) = (before.and_then(Instruction::target), next) {
+            self.motion(text, "ArcLStart", to, &self.arc_data(self.number(speed)), false);
         }
     }
 
-    /// Strikes the arc where the previous travel ended, with the data of the first piece.
-    fn arc_on(&self, text: &mut String, before: Option<&Instruction>, first: Option<usize>) {
-        if !self.with_arc() {
-            self.switch(text, &self.rapid.arc_on);
-            self.lines(text, &self.rapid.hooks.arc_established);
-        } else if let (Some(to), Some(number)) = (before.and_then(Instruction::target), first) {
-            let between = format!("vTravel,smBead,{}", self.weld_data(number));
-            self.motion(text, "ArcLStart", to, &between, false);
-        }
-    }
-
-    fn weld(&self, text: &mut String, via: Option<DVec3>, to: DVec3, number: usize, last: bool) {
-        let with_data = || format!("vTravel,smBead,{}", self.weld_data(number));
-        let (word, between) = match (self.with_arc(), via.is_some(), last) {
-            (true, false, false) => ("ArcL", with_data()),
-            (true, false, true) => ("ArcLEnd", with_data()),
-            (true, true, false) => ("ArcC", with_data()),
-            (true, true, true) => ("ArcCEnd", with_data()),
-            (false, false, _) => ("MoveL", format!("vd{number}")),
-            (false, true, _) => ("MoveC", format!("vd{number}")),
-        };
-        self.motion_over(text, word, via, to, &between, !last);
-    }
-
-    /// The welddata with this number, and the weavedata where the torch swings.
-    fn weld_data(&self, number: usize) -> String {
+    /// The data of a move with the arc on: the welddata with this number, and the weavedata where the torch swings.
+    fn arc_data(&self, number: usize) -> String {
         let weave = self.weave.as_ref().map(|_| format!("\\Weave:=wv{number}"));
-        format!("wd{number}{}", weave.unwrap_or_default())
-    }
-
-    fn arc_off(&self, text: &mut String) {
-        if !self.with_arc() {
-            self.hook(text, &self.rapid.hooks.before_arc_off);
-            self.switch(text, &self.rapid.arc_off);
-        } else if self.process.arc_end_delay > 0.0 {
-            statement(text, &format!("WaitTime \\InPos,{};", fixed(self.process.arc_end_delay, 3)));
-        }
-    }
-
-    /// The welddata hold the wire feed; without them lines of the profile set it.
-    fn wire_feed(&mut self, text: &mut String, ratio: f64) {
-        if !self.with_arc() {
-            self.values.set_wire_feed(ratio, self.process.wire_feed_speed);
-            self.lines(text, &self.rapid.wire_feed);
-        }
-    }
-
-    /// Lines that switch the arc, once the torch stands still: RAPID runs ahead of the robot.
-    fn switch(&self, text: &mut String, template: &[String]) {
-        statement(text, "WaitTime \\InPos,0;");
-        self.lines(text, template);
+        format!("vTravel,smBead,wd{number}{}", weave.unwrap_or_default())
     }
 
     /// The lines of `main` that run a layer.
@@ -413,8 +203,9 @@ impl AbbRapid {
     /// The data that the profile's subprograms declare, which RAPID requires before all routines, and the subprograms.
     fn behind_main(&self) -> (Vec<String>, Vec<String>) {
         let (mut data, mut routines) = (Vec::new(), Vec::new());
-        for lines in [&self.rapid.hooks.watch_routines, &self.rapid.routines] {
-            let lines: Vec<String> = self.values.expand(lines).collect();
+        let Frame { lines, values, .. } = &self.frame;
+        for lines in [&lines.hooks.watch_routines, &lines.routines] {
+            let lines: Vec<String> = values.expand(lines).collect();
             let begins = |line: &String| ROUTINES.iter().any(|word| line.trim_start().starts_with(word));
             let first = lines.iter().position(begins).unwrap_or(lines.len());
             data.extend_from_slice(&lines[..first]);
@@ -422,35 +213,51 @@ impl AbbRapid {
         }
         (data, routines)
     }
-}
 
-impl Writer for AbbRapid {
-    fn weaves(&self) -> bool {
-        self.weave.is_some() && self.with_arc()
-    }
-
-    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
-        self.digits = extent.layers.to_string().len().max(3);
-        self.values.set("layers", extent.layers);
-        // Room for "_L" and the number, and for that of a part: "_999".
-        self.name.truncate(names::MAX_NAME - 2 - self.digits - 4);
-        let mut text = format!("MODULE {}\r\n", self.name);
-        text.push_str(&format!("  ! {}\r\n", self.comment));
-        self.supplies.iter().for_each(|line| text.push_str(&format!("  ! {line}\r\n")));
-        if self.program.restart {
+    /// The data of the main module.
+    fn declarations(&self, text: &mut String) {
+        let Frame { program, process, travel_speed, layers, .. } = &self.frame;
+        if program.restart {
             text.push_str(&format!("  ! {}\r\n  PERS num {START}:=0;\r\n", restart::comment(START)));
         }
-        if self.program.layer_offsets {
-            let zeros = vec!["0"; extent.layers].join(",");
+        if program.layer_offsets {
+            let zeros = vec!["0"; *layers].join(",");
             text.push_str("  ! mm to be added to the height of each layer\r\n");
-            text.push_str(&format!("  PERS num nDz{{{}}}:=[{zeros}];\r\n", extent.layers));
+            text.push_str(&format!("  PERS num nDz{{{layers}}}:=[{zeros}];\r\n"));
         }
-        let standing = self.program.table_angle.or(self.program.table_side.map(|_| 0.0));
-        let (arc, home) = (self.with_arc(), data::external_axes(&self.program, standing, &self.rapid));
-        for line in data::declarations(&self.process, self.travel_speed, &self.rapid, arc, self.table(), &home) {
+        let standing = program.table_angle.or(program.table_side.map(|_| 0.0));
+        let (arc, home) = (self.with_arc(), data::external_axes(program, standing, &self.rapid));
+        for line in data::declarations(process, *travel_speed, &self.rapid, arc, self.table(), &home) {
             text.push_str(&format!("  {line}\r\n"));
         }
         self.behind_main().0.iter().for_each(|line| text.push_str(&format!("  {line}\r\n")));
+    }
+}
+
+impl Syntax for AbbRapid {
+    type Text = String;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
+    }
+
+    fn longest_name(&self, digits: usize) -> usize {
+        names::MAX_NAME - SUFFIX - digits
+    }
+
+    fn most_moves(&self) -> usize {
+        self.rapid.max_points
+    }
+
+    fn begin_main(&mut self) -> Vec<Chunk> {
+        let mut text = format!("MODULE {}\r\n", self.frame.name);
+        text.push_str(&format!("  ! {}\r\n", self.frame.comment));
+        self.frame.supplies.iter().for_each(|line| text.push_str(&format!("  ! {line}\r\n")));
+        self.declarations(&mut text);
         text.push_str("  PROC main()\r\n");
         // The robot chooses the posture nearest to the one that it has: configurations are unknown here.
         statement(&mut text, "ConfL \\Off;");
@@ -460,42 +267,139 @@ impl Writer for AbbRapid {
         statement(&mut text, "CirPathMode \\ObjectFrame;");
         self.units(&mut text);
         self.home(&mut text);
-        self.lines(&mut text, &self.rapid.start);
-        self.lines(&mut text, &self.rapid.hooks.watch);
+        frame::start(self, &mut text);
         let head = "<?xml version=\"1.0\" encoding=\"ISO-8859-1\" ?>\r\n<Program>\r\n";
-        let list = self.pgf(format!("{head}  <Module>{}.mod</Module>\r\n", self.name));
+        let list = self.pgf(format!("{head}  <Module>{}.mod</Module>\r\n", self.frame.name));
         [self.main(text)].into_iter().chain(list).collect()
     }
 
-    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
-        if program.instructions.is_empty() {
-            return Vec::new();
-        }
-        self.values.set_layer(program);
-        let speeds = self.speeds(program);
-        let parts = split::passes(&program.instructions, self.rapid.max_points);
-        let (mut feed, count) = (1.0, parts.len());
-        let module = |(part, moves)| self.module(program, (part, part + 1 == count), moves, &speeds, &mut feed);
-        parts.into_iter().enumerate().flat_map(module).collect()
-    }
-
-    fn end(&mut self) -> Vec<Chunk> {
+    fn end_main(&mut self) -> Vec<Chunk> {
         let mut text = String::new();
-        if self.program.layer_offsets {
+        if self.frame.program.layer_offsets {
             statement(&mut text, "PDispOff;");
         }
-        self.lines(&mut text, &self.rapid.hooks.all_off);
-        self.lines(&mut text, &self.rapid.end);
+        frame::end(self, &mut text);
         self.home(&mut text);
         text.push_str("  ENDPROC\r\n");
         self.behind_main().1.iter().for_each(|line| text.push_str(&format!("  {line}\r\n")));
         text.push_str("ENDMODULE\r\n");
         [self.main(text)].into_iter().chain(self.pgf("</Program>\r\n".to_owned())).collect()
     }
+
+    fn begin_layer(&mut self, program: &LayerProgram) {
+        self.frame.feed = 1.0;
+        self.speeds = self.speeds_of(program);
+    }
+
+    /// The module, and its line in the list of modules.
+    fn part(&mut self, part: &Part, moves: &[Instruction]) -> Vec<Chunk> {
+        let (module, routine, layer) = (self.name_of(part), routine(part), part.layer + 1);
+        let mut text = format!("MODULE {module}\r\n  ! {}\r\n", self.frame.comment);
+        text.reserve(moves.len() * 150);
+        self.declare(&mut text, part.layer);
+        text.push_str(&format!("  PROC {routine}()\r\n    ! layer {layer}, z {} mm\r\n", fixed(part.z, 3)));
+        if self.frame.program.layer_offsets {
+            statement(&mut text, &format!("PDispSet [[0,0,nDz{{{layer}}}],[1,0,0,0]];"));
+        }
+        frame::body(self, &mut text, part, moves);
+        text.push_str("  ENDPROC\r\nENDMODULE\r\n");
+        let listed = self.rapid.modules == RapidModules::Call;
+        let list = listed.then(|| self.pgf(format!("  <Module>{module}.mod</Module>\r\n"))).flatten();
+        [Chunk { file: format!("{module}.mod"), text }].into_iter().chain(list).collect()
+    }
+
+    fn call(&mut self, part: &Part) -> Vec<Chunk> {
+        vec![self.main(self.run(&self.name_of(part), &routine(part)))]
+    }
+
+    fn line(&mut self, text: &mut String, line: &str) {
+        statement(text, line);
+    }
+
+    fn settle(&mut self, text: &mut String) {
+        statement(text, "WaitTime \\InPos,0;");
+    }
+
+    fn begin_skippable(&mut self, text: &mut String, what: Skippable) {
+        statement(text, &format!("IF {START}<={} THEN", what.number()));
+    }
+
+    fn end_skippable(&mut self, text: &mut String) {
+        statement(text, "ENDIF");
+    }
+
+    fn begin_way(&mut self, text: &mut String, _number: usize, above: DVec3) {
+        statement(text, &format!("IF {START}>0 THEN"));
+        self.approach(text, above);
+        statement(text, &format!("{START}:=0;"));
+        statement(text, "ELSE");
+    }
+
+    fn stand(&mut self, attitude: Attitude) {
+        self.orientation = data::quaternion(&orientation::quaternion(self.rapid.orientation, Turn::Attitude(attitude)));
+        if attitude.table.is_some() {
+            self.axes = data::external_axes(&self.frame.program, attitude.table, &self.rapid);
+        }
+    }
+
+    /// RobotWare Arc: its instructions strike and end the arc, its data hold the wire feed and fill craters.
+    fn by_package(&mut self, text: &mut String, moves: &[Instruction], at: usize) -> bool {
+        if !self.with_arc() {
+            return false;
+        }
+        match moves[at] {
+            // ArcLStart itself moves there.
+            Instruction::Travel { .. } if matches!(moves.get(at + 1), Some(Instruction::ArcOn { .. })) => {}
+            Instruction::ArcOn { pass, kind } => {
+                self.pass(text, pass, kind);
+                self.arc_start(text, at.checked_sub(1).map(|before| &moves[before]), moves.get(at + 1));
+            }
+            Instruction::WireFeed { .. } | Instruction::Crater { .. } => {}
+            Instruction::ArcOff { .. } => {
+                if self.frame.process.arc_end_delay > 0.0 {
+                    self.wait(text, self.frame.process.arc_end_delay);
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    fn approach(&mut self, text: &mut String, to: DVec3) {
+        self.motion(text, "MoveJ", to, "vHome", false);
+    }
+
+    fn travel(&mut self, text: &mut String, to: DVec3) {
+        self.motion(text, "MoveL", to, "vTravel", false);
+    }
+
+    fn pass(&mut self, text: &mut String, pass: usize, kind: PassKind) {
+        statement(text, &format!("! pass {pass} {}", kind.name()));
+    }
+
+    fn weld(&mut self, text: &mut String, piece: Piece, _next: &[Instruction]) {
+        let (via, number) = (piece.circle.map(|circle| circle.via), self.number(piece.speed));
+        let (word, between) = match (self.with_arc(), via.is_some()) {
+            (true, false) => (if piece.last { "ArcLEnd" } else { "ArcL" }, self.arc_data(number)),
+            (true, true) => (if piece.last { "ArcCEnd" } else { "ArcC" }, self.arc_data(number)),
+            (false, false) => ("MoveL", format!("vd{number}")),
+            (false, true) => ("MoveC", format!("vd{number}")),
+        };
+        self.motion_over(text, word, via, piece.to, &between, !piece.last);
+    }
+
+    fn wait(&mut self, text: &mut String, seconds: f64) {
+        statement(text, &format!("WaitTime \\InPos,{};", fixed(seconds, 3)));
+    }
+
+    fn weaves(&self) -> bool {
+        self.weave.is_some() && self.with_arc()
+    }
 }
 
-fn wait(text: &mut String, seconds: f64) {
-    statement(text, &format!("WaitTime \\InPos,{};", fixed(seconds, 3)));
+/// The routine of a part of a layer.
+fn routine(part: &Part) -> String {
+    format!("Layer{}", part.number)
 }
 
 /// Crater filling and wire retraction at the end of a seam as the section `start_stop` sets them, where it does.

@@ -5,12 +5,13 @@
 //! where the arc switches. Lines end with a line feed alone, as on the controller, which runs Linux.
 
 use super::section::Urscript;
+use crate::dialect::writing::frame::{self, Frame, Part, Piece, Skippable, Syntax};
 use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::writing::volumes::{Volumes, from_anywhere};
-use crate::dialect::writing::{Chunk, Job, Values, Writer, crater_lines, restart, split, upper_name};
+use crate::dialect::writing::volumes::Volumes;
+use crate::dialect::writing::{Chunk, Job, restart, upper_name};
 use crate::number::{fixed, push_fixed};
-use crate::program::{Instruction, LayerProgram, ProgramSettings};
-use bead_plan::layer::Extent;
+use crate::program::{Attitude, Instruction};
+use bead_plan::pass::PassKind;
 use glam::DVec3;
 
 /// Words of the language and names of its functions that a part might happen to be named after.
@@ -37,25 +38,27 @@ const START: &str = "start_at";
 
 /// Writes URScript.
 pub(super) struct UniversalScript {
-    name: String,
-    comment: String,
-    supplies: Vec<String>,
+    frame: Frame,
     urscript: Urscript,
-    program: ProgramSettings,
-    values: Values,
     /// Rotation vector of the torch, rad.
     orientation: [f64; 3],
-    travel_speed: f64,
-    wire_feed_speed: f64,
-    digits: usize,
-    /// Number of layers.
-    count: usize,
-    /// Names of the layers' functions.
-    layers: Vec<String>,
+    /// Names of the layers' functions in the current volume.
+    functions: Vec<String>,
     at: Option<DVec3>,
-    volumes: Volumes,
-    /// Name of the current volume.
-    main: String,
+}
+
+/// The lines of a function.
+pub(super) struct Function {
+    text: String,
+    indent: &'static str,
+}
+
+impl Function {
+    fn line(&mut self, line: &str) {
+        for part in [self.indent, line, "\n"] {
+            self.text.push_str(part);
+        }
+    }
 }
 
 impl UniversalScript {
@@ -65,81 +68,16 @@ impl UniversalScript {
         if RESERVED.split(' ').any(|word| word == name) || name.starts_with("layer_") {
             name.insert_str(0, "p_");
         }
-        let comment = job.comment();
-        let values = Values::new(&name, job);
-        let (travel_speed, wire_feed_speed) = (job.weld.travel.speed, job.weld.process.wire_feed_speed);
-        let (layers, volumes, main) = (Vec::new(), Volumes::new(urscript.max_megabytes), String::new());
-        let (supplies, program, orientation) = (job.supplies(MAX_COMMENT), job.program.clone(), urscript.orientation);
-        Self {
-            name,
-            comment,
-            supplies,
-            urscript,
-            program,
-            values,
-            orientation,
-            travel_speed,
-            wire_feed_speed,
-            digits: 3,
-            count: 0,
-            layers,
-            at: None,
-            volumes,
-            main,
-        }
+        let volumes = Some(Volumes::new(urscript.max_megabytes, "URScript", "script"));
+        let frame = Frame { volumes, ..Frame::new(job, name, MAX_COMMENT, &urscript) };
+        let orientation = urscript.orientation;
+        Self { frame, urscript, orientation, functions: Vec::new(), at: None }
     }
 
-    fn lines(&self, text: &mut String, indent: &str, template: &[String]) {
-        for line in self.values.expand(template) {
-            text.push_str(&format!("{indent}{line}\n"));
-        }
-    }
-
-    /// Lines that a program begun later than `number` leaves out.
-    fn skippable(&self, text: &mut String, indent: &str, number: usize, lines: &[String]) {
-        if lines.is_empty() {
-            return;
-        }
-        self.begin_skippable(text, indent, number);
-        self.lines(text, indent, lines);
-        self.end_skippable(text, indent);
-    }
-
-    fn begin_skippable(&self, text: &mut String, indent: &str, number: usize) {
-        if self.program.restart {
-            text.push_str(&format!("{indent}if {START} <= {number}:\n"));
-        }
-    }
-
-    fn end_skippable(&self, text: &mut String, indent: &str) {
-        if self.program.restart {
-            text.push_str(&format!("{indent}end\n"));
-        }
-    }
-
-    /// Begins a pass: a program that begins at it comes from anywhere, others by the moves that follow.
-    fn pass_start(&mut self, text: &mut String, indent: &str, pass: usize, above: DVec3) {
-        let number = self.values.set_pass(pass);
-        self.begin_skippable(text, indent, number);
-        if self.program.restart {
-            text.push_str(&format!("{indent}if {START} > 0:\n"));
-            self.instruction(text, indent, Instruction::Approach { to: above }, None);
-            text.push_str(&format!("{indent}global {START} = 0\n{indent}else:\n"));
-        }
-    }
-
-    /// The torch is above the start of the pass, whichever way it came.
-    fn above(&mut self, text: &mut String, indent: &str) {
-        if self.program.restart {
-            text.push_str(&format!("{indent}end\n"));
-        }
-        self.lines(text, indent, &self.urscript.hooks.pass_start);
-    }
-
-    fn home(&self, text: &mut String) {
+    fn home(&self, main: &mut Function) {
         let axes = self.urscript.home.map(|axis| fixed(axis.to_radians(), 6)).join(",");
         let speed = fixed(self.urscript.home_speed.to_radians(), 6);
-        text.push_str(&format!("  movej([{axes}], a=1.400000, v={speed})\n"));
+        main.line(&format!("movej([{axes}], a=1.400000, v={speed})"));
     }
 
     fn pose(&self, text: &mut String, to: DVec3) {
@@ -148,7 +86,8 @@ impl UniversalScript {
         text.push(')');
     }
 
-    fn motion(&self, text: &mut String, indent: &str, via: Option<DVec3>, to: DVec3, speed: f64, blend: f64) {
+    fn motion(&self, function: &mut Function, via: Option<DVec3>, to: DVec3, speed: f64, blend: f64) {
+        let Function { text, indent } = function;
         text.push_str(indent);
         text.push_str(if via.is_some() { "movec(" } else { "movel(" });
         if let Some(via) = via {
@@ -179,185 +118,149 @@ impl UniversalScript {
         }
     }
 
-    fn instruction(&mut self, text: &mut String, indent: &str, instruction: Instruction, next: Option<&Instruction>) {
-        if let Some(attitude) = instruction.attitude() {
-            self.orientation = orientation::vector(self.urscript.orientation, Turn::Attitude(attitude));
+    /// Declarations at the head of the program.
+    fn head(&self, main: &mut Function) {
+        let Frame { comment, supplies, program, layers, .. } = &self.frame;
+        main.line(&format!("# {comment}"));
+        supplies.iter().for_each(|line| main.line(&format!("# {line}")));
+        if program.restart {
+            main.line(&format!("# {}", restart::comment(START)));
+            main.line(&format!("global {START} = 0"));
         }
-        match instruction {
-            Instruction::Approach { to } => {
-                text.push_str(&format!("{indent}movej("));
-                self.pose(text, to);
-                text.push_str(&format!(", a=1.400000, v={})\n", fixed(self.urscript.home_speed.to_radians(), 6)));
-                self.at = Some(to);
-            }
-            Instruction::Travel { to } | Instruction::Retract { to } => {
-                self.motion(text, indent, None, to, self.travel_speed, 0.0);
-                self.at = Some(to);
-            }
-            Instruction::ArcOn { pass, kind } => {
-                text.push_str(&format!("{indent}# pass {pass} {}\n", kind.name()));
-                self.lines(text, indent, &self.urscript.arc_on);
-                self.lines(text, indent, &self.urscript.hooks.arc_established);
-            }
-            Instruction::Weld { to, circle, speed, last, .. } => {
-                let blend = if last { 0.0 } else { self.blend(to, next) };
-                self.motion(text, indent, circle.map(|c| c.via), to, speed, blend);
-                self.at = Some(to);
-            }
-            Instruction::WireFeed { ratio } => {
-                self.values.set_wire_feed(ratio, self.wire_feed_speed);
-                self.lines(text, indent, &self.urscript.wire_feed);
-            }
-            Instruction::Crater { seconds, ratio } => {
-                if let Some(ratio) = ratio {
-                    self.values.set_wire_feed(ratio, self.wire_feed_speed);
-                    self.lines(text, indent, crater_lines(&self.urscript.crater, &self.urscript.wire_feed));
-                }
-                wait(text, indent, seconds);
-            }
-            Instruction::Dwell { seconds } => wait(text, indent, seconds),
-            Instruction::ArcOff { .. } => {
-                self.lines(text, indent, &self.urscript.hooks.before_arc_off);
-                self.lines(text, indent, &self.urscript.arc_off);
-            }
-            Instruction::PassStart { pass, above, .. } => self.pass_start(text, indent, pass, above),
-            Instruction::Above => self.above(text, indent),
-            Instruction::Turn { .. } => {}
-            Instruction::PassEnd => {
-                self.lines(text, indent, &self.urscript.hooks.pass_end);
-                self.end_skippable(text, indent);
-            }
+        if let Some(frame) = &self.urscript.tool_frame {
+            main.line(&format!("set_tcp({})", frame_text(frame)));
+        }
+        if let Some(mass) = self.urscript.payload {
+            main.line(&format!("set_payload({})", fixed(mass, 3)));
+        }
+        let frame = frame_text(&self.urscript.part_frame);
+        main.line(&format!("global part_frame = {frame}"));
+        if program.layer_offsets {
+            main.line("# mm to be added to the height of each layer");
+            main.line(&format!("global layer_dz = [{}]", vec!["0.0"; *layers].join(", ")));
+            main.line(&format!("global place = {frame}"));
+            main.line("def lifted(height):");
+            main.line("  return pose_trans(place, p[0.0,0.0,height/1000.0,0.0,0.0,0.0])");
+            main.line("end");
         }
     }
 
-    fn chunk(&self, text: String) -> Chunk {
-        Chunk::new(format!("{}.script", self.main), text)
+    fn chunks(&self, function: Function) -> Vec<Chunk> {
+        vec![Chunk::new(format!("{}.script", self.frame.main), function.text)]
     }
 }
 
-impl UniversalScript {
-    fn begin_volume(&mut self) -> Vec<Chunk> {
-        self.main = self.volumes.begin(&self.name);
-        self.layers.clear();
-        let mut text = format!("def {}():\n  # {}\n", self.main, self.comment);
-        self.supplies.iter().for_each(|line| text.push_str(&format!("  # {line}\n")));
-        if self.program.restart {
-            text.push_str(&format!("  # {}\n  global {START} = 0\n", restart::comment(START)));
-        }
-        if let Some(frame) = &self.urscript.tool_frame {
-            text.push_str(&format!("  set_tcp({})\n", frame_text(frame)));
-        }
-        if let Some(mass) = self.urscript.payload {
-            text.push_str(&format!("  set_payload({})\n", fixed(mass, 3)));
-        }
-        let frame = frame_text(&self.urscript.part_frame);
-        text.push_str(&format!("  global part_frame = {frame}\n"));
-        if self.program.layer_offsets {
-            let zeros = vec!["0.0"; self.count].join(", ");
-            text.push_str(&format!("  # mm to be added to the height of each layer\n  global layer_dz = [{zeros}]\n"));
-            text.push_str(&format!("  global place = {frame}\n  def lifted(height):\n"));
-            text.push_str("    return pose_trans(place, p[0.0,0.0,height/1000.0,0.0,0.0,0.0])\n  end\n");
-        }
-        self.lines(&mut text, "  ", &self.urscript.hooks.watch_routines);
-        self.lines(&mut text, "  ", &self.urscript.routines);
-        self.volumes.add_frame(text.len() + self.closing().len());
-        vec![self.chunk(text)]
+impl Syntax for UniversalScript {
+    type Text = Function;
+
+    fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    fn frame_mut(&mut self) -> &mut Frame {
+        &mut self.frame
+    }
+
+    fn most_moves(&self) -> usize {
+        MAX_MOVES
+    }
+
+    /// The functions of the layers follow inside the program.
+    fn begin_main(&mut self) -> Vec<Chunk> {
+        self.functions.clear();
+        let mut main = Function { text: format!("def {}():\n", self.frame.main), indent: "  " };
+        self.head(&mut main);
+        frame::routines(self, &mut main);
+        self.chunks(main)
     }
 
     /// What runs: home, the functions of the layers, home.
-    fn closing(&self) -> String {
-        let mut text = String::new();
-        self.home(&mut text);
-        self.lines(&mut text, "  ", &self.urscript.start);
-        self.lines(&mut text, "  ", &self.urscript.hooks.watch);
-        self.layers.iter().for_each(|name| text.push_str(&format!("  {name}()\n")));
-        self.lines(&mut text, "  ", &self.urscript.hooks.all_off);
-        self.lines(&mut text, "  ", &self.urscript.end);
-        self.home(&mut text);
-        text.push_str("end\n");
+    fn end_main(&mut self) -> Vec<Chunk> {
+        let mut main = Function { text: String::new(), indent: "  " };
+        self.home(&mut main);
+        frame::start(self, &mut main);
+        self.functions.iter().for_each(|name| main.line(&format!("{name}()")));
+        frame::end(self, &mut main);
+        self.home(&mut main);
+        main.text.push_str("end\n");
         if self.urscript.call {
-            text.push_str(&format!("{}()\n", self.main));
+            main.text.push_str(&format!("{}()\n", self.frame.main));
         }
-        text
+        self.chunks(main)
     }
 
-    fn end_volume(&self) -> Vec<Chunk> {
-        vec![self.chunk(self.closing())]
+    fn name_of(&self, part: &Part) -> String {
+        format!("layer_{}", part.number)
     }
 
-    /// The function of one part of a layer (`part` counts from 0; `last` if no other follows).
-    fn function(
-        &mut self,
-        name: &str,
-        program: &LayerProgram,
-        (part, last): (usize, bool),
-        moves: &[Instruction],
-    ) -> String {
-        let mut text = format!("  def {name}():\n    # layer {}, z {} mm\n", program.index + 1, fixed(program.z, 3));
-        text.reserve(moves.len() * 120);
-        if self.program.layer_offsets {
-            text.push_str(&format!("    global part_frame = lifted(layer_dz[{}])\n", program.index));
+    fn part(&mut self, part: &Part, moves: &[Instruction]) -> Vec<Chunk> {
+        let mut function = Function { text: format!("  def {}():\n", self.name_of(part)), indent: "    " };
+        function.text.reserve(moves.len() * 120);
+        function.line(&format!("# layer {}, z {} mm", part.layer + 1, fixed(part.z, 3)));
+        if self.frame.program.layer_offsets {
+            function.line(&format!("global part_frame = lifted(layer_dz[{}])", part.layer));
         }
-        if part == 0 {
-            let lines = self.urscript.hooks.before_layer(&self.urscript.layer_start, program.index, &self.program);
-            self.skippable(&mut text, "    ", self.values.last_number(), &lines);
-        }
-        for (i, &instruction) in moves.iter().enumerate() {
-            let behind = moves[i + 1..].iter();
-            let next = behind.into_iter().find(|next| !matches!(next, Instruction::WireFeed { .. }));
-            self.instruction(&mut text, "    ", instruction, next);
-        }
-        if last {
-            self.skippable(&mut text, "    ", self.values.last_number(), &self.urscript.hooks.layer_end);
-        }
-        text + "  end\n"
-    }
-}
-
-impl Writer for UniversalScript {
-    fn begin(&mut self, extent: &Extent) -> Vec<Chunk> {
-        self.digits = extent.layers.to_string().len().max(3);
-        self.values.set("layers", extent.layers);
-        self.count = extent.layers;
-        self.begin_volume()
+        frame::body(self, &mut function, part, moves);
+        function.text.push_str("  end\n");
+        self.chunks(function)
     }
 
-    fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk> {
-        if program.instructions.is_empty() {
-            return Vec::new();
-        }
-        self.values.set_layer(program);
-        let parts = split::passes(&program.instructions, MAX_MOVES);
-        let (count, mut chunks) = (parts.len(), Vec::new());
-        for (part, moves) in parts.into_iter().enumerate() {
-            let more = if part == 0 { String::new() } else { format!("_{}", part + 1) };
-            let name = format!("layer_{:0digits$}{more}", program.index + 1, digits = self.digits);
-            let place = (part, part + 1 == count);
-            let mut text = self.function(&name, program, place, moves);
-            if !self.volumes.has_room(text.len()) {
-                chunks.extend(self.end_volume());
-                chunks.extend(self.begin_volume());
-                text = self.function(&name, program, place, &from_anywhere(moves));
-            }
-            // With its call.
-            self.volumes.add(text.len() + name.len() + 5);
-            self.layers.push(name);
-            chunks.push(self.chunk(text));
-        }
-        chunks
+    /// The call comes at the end.
+    fn call(&mut self, part: &Part) -> Vec<Chunk> {
+        self.functions.push(self.name_of(part));
+        Vec::new()
     }
 
-    fn end(&mut self) -> Vec<Chunk> {
-        self.end_volume()
+    fn line(&mut self, function: &mut Function, line: &str) {
+        function.line(line);
     }
 
-    fn notes(&self) -> Vec<String> {
-        self.volumes.note("URScript", "script").into_iter().collect()
+    fn begin_skippable(&mut self, function: &mut Function, what: Skippable) {
+        function.line(&format!("if {START} <= {}:", what.number()));
     }
-}
 
-fn wait(text: &mut String, indent: &str, seconds: f64) {
-    text.push_str(&format!("{indent}sleep({})\n", fixed(seconds, 3)));
+    fn end_skippable(&mut self, function: &mut Function) {
+        function.line("end");
+    }
+
+    fn begin_way(&mut self, function: &mut Function, _number: usize, above: DVec3) {
+        function.line(&format!("if {START} > 0:"));
+        self.approach(function, above);
+        function.line(&format!("global {START} = 0"));
+        function.line("else:");
+    }
+
+    fn stand(&mut self, attitude: Attitude) {
+        self.orientation = orientation::vector(self.urscript.orientation, Turn::Attitude(attitude));
+    }
+
+    fn approach(&mut self, function: &mut Function, to: DVec3) {
+        let mut text = "movej(".to_owned();
+        self.pose(&mut text, to);
+        text.push_str(&format!(", a=1.400000, v={})", fixed(self.urscript.home_speed.to_radians(), 6)));
+        function.line(&text);
+        self.at = Some(to);
+    }
+
+    fn travel(&mut self, function: &mut Function, to: DVec3) {
+        self.motion(function, None, to, self.frame.travel_speed, 0.0);
+        self.at = Some(to);
+    }
+
+    fn pass(&mut self, function: &mut Function, pass: usize, kind: PassKind) {
+        function.line(&format!("# pass {pass} {}", kind.name()));
+    }
+
+    fn weld(&mut self, function: &mut Function, piece: Piece, next: &[Instruction]) {
+        let next = next.iter().find(|next| !matches!(next, Instruction::WireFeed { .. }));
+        let blend = if piece.last { 0.0 } else { self.blend(piece.to, next) };
+        self.motion(function, piece.circle.map(|circle| circle.via), piece.to, piece.speed, blend);
+        self.at = Some(piece.to);
+    }
+
+    fn wait(&mut self, function: &mut Function, seconds: f64) {
+        function.line(&format!("sleep({})", fixed(seconds, 3)));
+    }
 }
 
 /// A position in mm, written as `p[x,y,z,rx,ry,rz]` in metres and radians.

@@ -3,6 +3,7 @@
 //! A writer does no I/O: it returns [`Chunk`]s, text to be appended to a named file, layer by layer.
 
 mod extra;
+pub(super) mod frame;
 mod hooks;
 mod names;
 pub(super) mod needs;
@@ -256,11 +257,6 @@ pub fn write_with<L: Borrow<Layer>>(
         files.entry(chunk.file).or_default().push_str(&chunk.text);
     }
     writer.failure().map_or(Ok(files), Err)
-}
-
-/// Lines that set the wire feed in a crater: the profile's own for craters or, without these, its general ones.
-pub(super) fn crater_lines<'a>(crater: &'a [String], wire_feed: &'a [String]) -> &'a [String] {
-    if crater.is_empty() { wire_feed } else { crater }
 }
 
 /// A wait split into pieces of at most `most`, the longest that a controller accepts at once, s.

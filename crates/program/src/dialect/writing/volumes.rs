@@ -6,6 +6,9 @@ use crate::program::Instruction;
 /// What has been written of each volume.
 #[derive(Debug, Clone)]
 pub(in crate::dialect) struct Volumes {
+    /// The language, and the extension of main programs.
+    language: &'static str,
+    extension: &'static str,
     /// The most that a volume may hold, bytes.
     most: usize,
     /// Size of the current one, bytes.
@@ -24,10 +27,10 @@ pub(in crate::dialect) struct Volumes {
 pub(in crate::dialect) const MEGABYTE: f64 = 1e6;
 
 impl Volumes {
-    /// Volumes of at most this many megabytes.
-    pub(in crate::dialect) fn new(megabytes: f64) -> Self {
+    /// Volumes of at most this many megabytes, of programs in a language whose main programs have this extension.
+    pub(in crate::dialect) fn new(megabytes: f64, language: &'static str, extension: &'static str) -> Self {
         let most = (megabytes * MEGABYTE) as usize;
-        Self { most, size: 0, begun: false, names: Vec::new(), largest: 0, total: 0 }
+        Self { language, extension, most, size: 0, begun: false, names: Vec::new(), largest: 0, total: 0 }
     }
 
     /// Begins a volume and returns its name: that of the program, with a number from the second one on.
@@ -58,7 +61,8 @@ impl Volumes {
     }
 
     /// What people must know about them, if there are several, or if one is larger than it may be.
-    pub(in crate::dialect) fn note(&self, language: &str, extension: &str) -> Option<String> {
+    pub(in crate::dialect) fn note(&self) -> Option<String> {
+        let Self { language, extension, .. } = self;
         let megabytes = |bytes: usize| bytes as f64 / MEGABYTE;
         let (total, largest, most) = (megabytes(self.total), megabytes(self.largest), megabytes(self.most));
         match &self.names[..] {
