@@ -23,7 +23,7 @@ def measured(trial: optuna.Trial) -> tuple[float, float]:
     except beadwright.BeadwrightError as error:
         # What cannot be built is no worse than any other trial that fails.
         raise optuna.TrialPruned(str(error)) from error
-    return plan.metrics["total_time_s"] / 60, beadwright.simulate(plan).row["void %"]
+    return plan.metrics.total_time_s / 60, beadwright.simulate(plan).row["void %"]
 
 
 def main() -> None:

@@ -76,9 +76,9 @@ def test_two_python_threads_give_the_same_bytes() -> None:
 
 def test_metrics_are_those_of_the_file(cross: Plan, tmp_path: Path) -> None:
     cross.save(tmp_path)
-    told = json.loads((tmp_path / "metrics.json").read_text())
-    assert {name: told[name] for name in cross.metrics} == cross.metrics
-    assert told["deposit"] == beadwright.simulate(cross).deposit
+    written = json.loads((tmp_path / "metrics.json").read_text())
+    assert {name: written[name] for name in cross.metrics} == cross.metrics
+    assert written["deposit"] == beadwright.simulate(cross).deposit
 
 
 def test_a_folder_is_exchanged_as_a_set(tmp_path: Path) -> None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import gc
 import hashlib
 import json
+import pickle
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import get_type_hints
 
 import numpy as np
 import pytest
@@ -52,6 +54,20 @@ def test_lengths_are_those_of_the_points(contours: Plan) -> None:
     total = sum(each.length for each in contours.passes)
     assert contours.metrics["deposited_length_mm"] == pytest.approx(total), "the profile has no overlaps"
     assert contours.metrics["arc_starts"] == len(contours.passes)
+
+
+def test_metrics_have_the_attributes_that_they_declare(cross: Plan) -> None:
+    metrics = cross.metrics
+    declared = get_type_hints(beadwright.Metrics)
+    assert set(declared) == set(metrics) <= set(dir(metrics))
+    for name, kind in declared.items():
+        assert getattr(metrics, name) == metrics[name]
+        assert isinstance(metrics[name], kind), name
+    assert metrics.total_time_s > metrics.arc_time_s > 0
+    assert pickle.loads(pickle.dumps(metrics)) == metrics
+    assert json.loads(json.dumps(metrics)) == metrics
+    with pytest.raises(AttributeError, match='no total "total_time"; use arc_starts, '):
+        getattr(metrics, "total_time")  # noqa: B009
 
 
 def test_metal_is_wire(contours: Plan) -> None:

@@ -15,6 +15,7 @@ from beadwright._executors import LocalExecutor, RayExecutor
 from beadwright._heat import Heat, heat
 from beadwright._judging import Comparison, HeightField, Judged, compare, height_field, simulate
 from beadwright._layer import Finding, Island, Layer, LayerWarning, Pass
+from beadwright._metrics import Metrics
 from beadwright._part import Part, examples
 from beadwright._plan import Plan, plan
 from beadwright._profile import Profile, profiles, strategies
@@ -34,6 +35,7 @@ __all__ = [
     "Layer",
     "LayerWarning",
     "LocalExecutor",
+    "Metrics",
     "Part",
     "Pass",
     "Plan",

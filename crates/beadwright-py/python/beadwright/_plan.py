@@ -13,6 +13,7 @@ from typing import Any, TypeAlias
 from beadwright import _core
 from beadwright._progress import Progress, steps
 from beadwright._layer import Finding, Layer, LayerWarning, Pass
+from beadwright._metrics import Metrics
 from beadwright._part import Part
 from beadwright._profile import Profile
 
@@ -85,9 +86,9 @@ class Plan:
         return [each for layer in self.layers for each in layer.passes]
 
     @cached_property
-    def metrics(self) -> dict[str, Any]:
-        """The totals, as in metrics.json: the names give the units."""
-        return self._inner.metrics
+    def metrics(self) -> Metrics:
+        """The totals: lengths, times, wire, areas and volumes."""
+        return Metrics(self._inner.metrics)
 
     @cached_property
     def warnings(self) -> list[LayerWarning]:
@@ -177,22 +178,22 @@ class Plan:
     def _repr_html_(self) -> str:
         """Totals, warnings, and the layer in the middle."""
         rows = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in self._rows())
-        told = "".join(f"<li>{escape(text)}</li>" for text in [*map(str, self.warnings), *self.notes])
+        remarks = "".join(f"<li>{escape(text)}</li>" for text in [*map(str, self.warnings), *self.notes])
         middle = self.layers[len(self.layers) // 2]
         return (
             f"<h4>{escape(self.part)}: {escape(self.strategy)}, {escape(self.profile)}</h4><table>{rows}</table>"
-            f'<ul>{told}</ul><div style="max-width:32em">{middle.svg()}</div>'
+            f'<ul>{remarks}</ul><div style="max-width:32em">{middle.svg()}</div>'
         )
 
     def _rows(self) -> list[tuple[str, str]]:
         totals = self.metrics
         return [
-            ("layers", str(totals["layers"])),
-            ("arc starts", str(totals["arc_starts"])),
-            ("deposited length", f"{totals['deposited_length_mm'] / 1e3:.2f} m"),
-            ("travel length", f"{totals['travel_length_mm'] / 1e3:.2f} m"),
-            ("time", f"{totals['total_time_s'] / 60:.1f} min"),
-            ("wire", f"{totals['wire_mass_kg']:.3f} kg"),
+            ("layers", str(totals.layers)),
+            ("arc starts", str(totals.arc_starts)),
+            ("deposited length", f"{totals.deposited_length_mm / 1e3:.2f} m"),
+            ("travel length", f"{totals.travel_length_mm / 1e3:.2f} m"),
+            ("time", f"{totals.total_time_s / 60:.1f} min"),
+            ("wire", f"{totals.wire_mass_kg:.3f} kg"),
         ]
 
     def __repr__(self) -> str:
