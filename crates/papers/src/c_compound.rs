@@ -3,6 +3,7 @@
 
 use crate::goal::{self, Goal};
 use crate::{ReproduceError, Reproduced};
+use beadwright::bead::library::median;
 use beadwright::compare::{self, Entry};
 use beadwright::example;
 use beadwright::fill::{LineEnds, RasterSpacing, StrategyName};
@@ -271,13 +272,6 @@ const TURNED: [&str; 10] = [
 /// The greatest value.
 fn most(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
-}
-
-/// The middle value; the mean of the two in the middle.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    let half = values.len() / 2;
-    if values.len() % 2 == 1 { values[half] } else { values[half - 1].midpoint(values[half]) }
 }
 
 /// What is judged.

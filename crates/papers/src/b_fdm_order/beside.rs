@@ -10,10 +10,6 @@ use beadwright::report::plot::{Curve, Plot};
 use beadwright::report::sheet::{Row, Sheet};
 use glam::DVec2;
 
-/// Index of [`WHOLE`] and of [`LITERAL`] among the other plans.
-const BASELINE: usize = 4;
-const METHODS: usize = 1;
-
 fn plain(cells: impl IntoIterator<Item = String>) -> Row {
     cells.into_iter().map(|text| (text, false)).collect()
 }
@@ -55,7 +51,7 @@ fn absolute_rows(plate: &Plate, sweep: &[At], printer: &Printer) -> [Row; 2] {
     let turned = Turned::new(plate, 0.0, printer);
     let at_zero = [WHOLE, LITERAL, OURS].map(|plan: Plan| turned.outcome(&plan));
     let row = |what: &str, [before, after]: [f64; 2], value: fn(&Outcome) -> f64| {
-        let means = [Spread::of(sweep, |at| value(&at.others[BASELINE])), Spread::of(sweep, |at| value(at.ours()))];
+        let means = [Spread::of(sweep, |at| value(&at.whole)), Spread::of(sweep, |at| value(at.ours()))];
         let [whole, literal, ours] = at_zero.each_ref().map(|outcome| format!("{:.1}", value(outcome)));
         let figure = format!("{} (figure {})", plate.name, plate.printed.figure);
         let means = format!("{:.1}, {:.1}", means[0].mean, means[1].mean);
@@ -157,18 +153,17 @@ const CORNER_HEAD: [&str; 8] = [
 fn corner_row(plate: &Plate, sweep: &[At]) -> Row {
     let less = |[before, after]: [f64; 2]| 100.0 * (1.0 - after / before);
     let [top, side] = plate.printed.roughness.map(less);
-    let whole = |at: &At| at.others[BASELINE];
     let mean = |value: &dyn Fn(&At) -> f64| format!("{:.1}", Spread::of(sweep, value).mean);
     plain([
         plate.name.to_owned(),
         format!("{top:.1}"),
         format!("{side:.1}"),
-        mean(&|at| whole(at).corner_area),
-        mean(&|at| less([whole(at).corner_area, at.others[METHODS].corner_area])),
-        sweep.first().map_or_else(String::new, |at| {
-            format!("{:.1}", less([whole(at).corner_area, at.others[METHODS].corner_area]))
-        }),
-        mean(&|at| less([whole(at).corner_area, at.ours().corner_area])),
-        mean(&|at| less([whole(at).paths, at.ours().paths])),
+        mean(&|at| at.whole.corner_area),
+        mean(&|at| less([at.whole.corner_area, at.literal.corner_area])),
+        sweep
+            .first()
+            .map_or_else(String::new, |at| format!("{:.1}", less([at.whole.corner_area, at.literal.corner_area]))),
+        mean(&|at| less([at.whole.corner_area, at.ours().corner_area])),
+        mean(&|at| less([at.whole.paths, at.ours().paths])),
     ])
 }

@@ -24,7 +24,7 @@ use beadwright::report::plot::{Curve, Plot};
 use beadwright::report::sheet::{Row, Sheet};
 use beadwright::task::Task;
 use glam::DVec2;
-use plans::{CONTOURS, OTHERS, STEPS};
+use plans::{CONTOURS, STEPS};
 use rayon::prelude::*;
 
 /// Angles by which every plate is turned, °.
@@ -36,19 +36,32 @@ fn rotations() -> impl IndexedParallelIterator<Item = f64> {
 struct At {
     degrees: f64,
     steps: [Outcome; STEPS.len()],
-    others: [Outcome; OTHERS.len()],
+    /// Of [`COLUMNS`], and so on: the plans other than the steps.
+    columns: Outcome,
+    literal: Outcome,
+    fixed: Outcome,
+    alike: Outcome,
+    whole: Outcome,
 }
+
+/// One of the outcomes.
+type Which = fn(&At) -> Outcome;
 
 impl At {
     fn new(plate: &Plate, degrees: f64, printer: &Printer) -> Self {
         let turned = Turned::new(plate, degrees, printer);
         let outcome = |plan: Plan| turned.outcome(&plan);
-        Self { degrees, steps: STEPS.map(outcome), others: OTHERS.map(outcome) }
+        let [columns, literal, fixed, alike, whole] = [COLUMNS, LITERAL, FIXED, ALIKE, WHOLE].map(outcome);
+        Self { degrees, steps: STEPS.map(outcome), columns, literal, fixed, alike, whole }
     }
 
     /// What all steps together save of the plain plan.
     fn saved(&self) -> Saved {
-        self.ours().saved(&self.steps[0])
+        self.ours().saved(self.plain())
+    }
+
+    fn plain(&self) -> &Outcome {
+        &self.steps[0]
     }
 
     fn ours(&self) -> &Outcome {
@@ -187,17 +200,17 @@ fn goals_of(plate: &Plate, sweep: &[At]) -> Vec<Goal> {
     let goal = |what, goal, value: &dyn Fn(&At) -> f64| Goal { what, goal, ours: Spread::of(sweep, value) };
     vec![
         goal("contour travel against file order (shuffled, weak)", travel, &|at| at.saved().travel),
-        goal("contour travel against columns (boustrophedon)", travel, &|at| at.ours().saved(&at.others[0]).travel),
+        goal("contour travel against columns (boustrophedon)", travel, &|at| at.ours().saved(&at.columns).travel),
         goal("layer time against whole lines over holes, as the paper describes them", time, &|at| {
-            at.ours().saved(&at.others[4]).time
+            at.ours().saved(&at.whole).time
         }),
-        goal("the same by the paper's methods", time, &|at| at.others[1].saved(&at.others[4]).time),
+        goal("the same by the paper's methods", time, &|at| at.literal.saved(&at.whole).time),
         goal("layer time against plain (its sub-regions are a step of the method)", time, &|at| at.saved().time),
-        goal("layer time against plain with columns", time, &|at| at.ours().saved(&at.others[0]).time),
-        goal("layer time against plain, by the paper's methods", time, &|at| at.others[1].saved(&at.steps[0]).time),
-        goal("layer time, best angle against 0°/90°", -LOSES_AT_MOST, &|at| at.ours().saved(&at.others[2]).time),
+        goal("layer time against plain with columns", time, &|at| at.ours().saved(&at.columns).time),
+        goal("layer time against plain, by the paper's methods", time, &|at| at.literal.saved(at.plain()).time),
+        goal("layer time, best angle against 0°/90°", -LOSES_AT_MOST, &|at| at.ours().saved(&at.fixed).time),
         goal("layer time, best angle against 0° on both layers", -LOSES_AT_MOST, &|at| {
-            at.ours().saved(&at.others[3]).time
+            at.ours().saved(&at.alike).time
         }),
     ]
 }
@@ -220,8 +233,8 @@ fn start_cost(plate: &Plate, sweep: &[At]) -> Option<String> {
     let mean = |value: &dyn Fn(&At) -> f64| Spread::of(sweep, value).mean;
     let left = 1.0 - plate.paper[1] / 100.0;
     // Time and starts that are too many for the goal.
-    let seconds = mean(&|at| at.ours().seconds - left * at.steps[0].seconds);
-    let fewer = mean(&|at| left * starts(&at.steps[0]) - starts(at.ours()));
+    let seconds = mean(&|at| at.ours().seconds - left * at.plain().seconds);
+    let fewer = mean(&|at| left * starts(at.plain()) - starts(at.ours()));
     (seconds > 0.0 && fewer > 0.0).then(|| {
         format!(
             "  a printer that loses {:.1} s at every start of a path would reach the paper's layer time on average",
@@ -233,7 +246,7 @@ fn start_cost(plate: &Plate, sweep: &[At]) -> Option<String> {
 /// What each step saves of the plain plan's time beyond the step before, %.
 fn shares(sweep: &[At]) -> impl Iterator<Item = (&'static Plan, Spread)> + '_ {
     STEPS.iter().enumerate().skip(1).map(|(i, plan)| {
-        let saved = |at: &At, step: usize| at.steps[step].saved(&at.steps[0]).time;
+        let saved = |at: &At, step: usize| at.steps[step].saved(at.plain()).time;
         (plan, Spread::of(sweep, |at| saved(at, i) - saved(at, i - 1)))
     })
 }
@@ -245,7 +258,7 @@ fn tell(page: &mut Sheet, plate: &Plate, sweep: &[At], printer: &Printer) {
 
     let row = |(plan, of): (&Plan, &dyn Fn(&At) -> Outcome)| {
         let mean = |value: fn(&Outcome) -> f64| Spread::of(sweep, |at| value(&of(at))).mean;
-        let saved = Spread::of(sweep, |at| of(at).saved(&at.steps[0]).time);
+        let saved = Spread::of(sweep, |at| of(at).saved(at.plain()).time);
         let means = [
             format!("{:.1}", mean(|o| o.contour_travel)),
             format!("{:.1}", mean(|o| o.fill_travel)),
@@ -256,7 +269,14 @@ fn tell(page: &mut Sheet, plate: &Plate, sweep: &[At], printer: &Printer) {
         [plan.name.to_owned()].into_iter().chain(means).chain(saved.cells()).map(plain).collect()
     };
     let steps = STEPS.iter().enumerate().map(|(i, plan)| row((plan, &|at| at.steps[i])));
-    let others = OTHERS.iter().enumerate().map(|(i, plan)| row((plan, &|at| at.others[i])));
+    let others: [(&Plan, Which); 5] = [
+        (&COLUMNS, |at| at.columns),
+        (&LITERAL, |at| at.literal),
+        (&FIXED, |at| at.fixed),
+        (&ALIKE, |at| at.alike),
+        (&WHOLE, |at| at.whole),
+    ];
+    let others = others.iter().map(|(plan, of)| row((plan, of)));
     page.table(&STEP_HEAD, &steps.chain(others).collect::<Vec<Row>>());
 
     let share =
@@ -278,9 +298,9 @@ fn tell(page: &mut Sheet, plate: &Plate, sweep: &[At], printer: &Printer) {
         y: "saved, %".to_owned(),
         curves: vec![
             curve("ours", &|at| at.saved().time),
-            curve("ours, of whole lines", &|at| at.ours().saved(&at.others[4]).time),
-            curve("the paper's methods", &|at| at.others[1].saved(&at.steps[0]).time),
-            curve("0° on both layers", &|at| at.others[3].saved(&at.steps[0]).time),
+            curve("ours, of whole lines", &|at| at.ours().saved(&at.whole).time),
+            curve("the paper's methods", &|at| at.literal.saved(at.plain()).time),
+            curve("0° on both layers", &|at| at.alike.saved(at.plain()).time),
             curve("the paper's figure", &|_| plate.paper[1]),
         ],
         ..Plot::default()

@@ -102,9 +102,6 @@ pub const FIXED: Plan = Plan { name: "all steps, fixed 0°/90°", raster: Raster
 /// All steps but the alternation: what crossing the lines of two layers costs.
 pub const ALIKE: Plan = Plan { name: "all steps, 0° on both layers", raster: Raster::Alike, ..OURS };
 
-/// The plans other than the steps.
-pub(super) const OTHERS: [Plan; 5] = [COLUMNS, LITERAL, FIXED, ALIKE, WHOLE];
-
 /// The methods for start points and order of the contours.
 pub(super) const CONTOURS: [(&str, Loops); 6] = [
     ("file order (shuffled: a weak baseline)", Loops::File),

@@ -25,7 +25,7 @@ mod student;
 pub use demonstration::demonstration_csv;
 pub use error::LibraryError;
 pub use measured::{Columns, Measured};
-pub use printed::{PrintedRow, printed_rows};
+pub use printed::{PrintedRow, median, printed_rows};
 pub use solve::{Layering, Limit, PREFERRED_RATIOS, Recipe, Wish};
 
 use super::Bead;

@@ -99,9 +99,19 @@ pub fn printed_rows(text: &str) -> Result<Vec<PrintedRow>, LibraryError> {
     Ok(rows)
 }
 
-/// The middle of some values; the mean of the two in the middle.
-fn median(mut values: Vec<f64>) -> f64 {
+/// The middle of some values, or the mean of the two in the middle; NaN of none.
+///
+/// ```
+/// use bead_plan::bead::library::median;
+///
+/// assert_eq!(median(vec![3.0, 1.0, 20.0]), 3.0);
+/// assert_eq!(median(vec![3.0, 1.0, 20.0, 4.0]), 3.5);
+/// ```
+pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     let half = values.len() / 2;
+    if values.is_empty() {
+        return f64::NAN;
+    }
     if values.len() % 2 == 1 { values[half] } else { values[half - 1].midpoint(values[half]) }
 }
