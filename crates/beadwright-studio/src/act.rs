@@ -5,10 +5,12 @@ use crate::export::Export;
 use crate::heat;
 use crate::jobs::{self, Ask};
 use crate::studio::Studio;
+use crate::thumbnail::{self, thumbnail};
 use crate::view::Mode;
 use crate::view3d::StandardView;
+use beadwright::example;
 use beadwright::robot::Cell;
-use eframe::egui::ViewportCommand;
+use eframe::egui::{TextureOptions, ViewportCommand};
 use std::path::Path;
 
 impl Studio {
@@ -73,7 +75,11 @@ impl Studio {
             Action::Keys => self.view.keys = !self.view.keys,
             Action::Quit => self.window.ctx.send_viewport_cmd(ViewportCommand::Close),
             Action::Ask(what) => self.ask(what),
-            Action::Answer(what, path) => self.answered(what, &path),
+            Action::Answer(path) => {
+                if let (Some(what), Some(path)) = (self.jobs.typed.take(), path) {
+                    self.answered(what, &path);
+                }
+            }
             Action::Export(what) => {
                 let folder = self.view.folder.trim().to_owned();
                 self.jobs.exporting = what;
@@ -104,6 +110,8 @@ impl Studio {
             Action::Height(height) => self.change("height", |project| project.height = Some(height)),
             Action::CompareWith(strategy) => self.compare_with(Some(strategy)),
             Action::Dismiss(index) => drop(self.window.messages.remove(index)),
+            Action::DismissFailure => self.plans.own.failure = None,
+            Action::DrawExample => self.draw_example(),
             Action::LookCloser => self.look_closer(),
             Action::Heat => self.begin_heat(),
             Action::CloseScan => self.close_scan(),
@@ -124,6 +132,16 @@ impl Studio {
             Action::Leave => self.close(),
             Action::GoOn => self.window.closing = false,
         }
+    }
+
+    /// Draws the picture of one example, so that no frame takes long.
+    fn draw_example(&mut self) {
+        let (ctx, drawn) = (&self.window.ctx, &mut self.window.pictures);
+        let Some(example) = example::ALL.get(drawn.len()) else { return };
+        let scale = ctx.pixels_per_point().ceil() as usize;
+        let picture = thumbnail(&example.mesh(), thumbnail::SIZE.map(|length| length * scale));
+        drawn.push(ctx.load_texture(example.name, picture, TextureOptions::LINEAR));
+        ctx.request_repaint();
     }
 
     /// Computes the steps of the strategies in the layer in view.

@@ -59,8 +59,8 @@ pub enum Action {
     Quit,
     /// Asks for a file.
     Ask(Ask),
-    /// Continues with a path that was typed.
-    Answer(Ask, PathBuf),
+    /// Continues with a path that was typed; without one, asks no more.
+    Answer(Option<PathBuf>),
     /// Writes something into the folder named in the panel, or asks for one.
     Export(Export),
     /// Opens a model or a project.
@@ -89,6 +89,10 @@ pub enum Action {
     CompareWith(StrategyName),
     /// Removes a message, by its index.
     Dismiss(usize),
+    /// Removes the message on why there is no plan.
+    DismissFailure,
+    /// Draws the picture of the next example.
+    DrawExample,
     /// Computes the steps of the strategies in the layer in view.
     LookCloser,
     /// Closes the scan.

@@ -2,6 +2,7 @@
 
 use crate::actions;
 use crate::jobs::{self, Answer};
+use crate::known::Queue;
 use crate::panels;
 use crate::studio::Studio;
 use crate::view3d::Colour;
@@ -90,8 +91,11 @@ impl eframe::App for Studio {
         }
         let dropped = self.window.ctx.input(|input| input.raw.dropped_files.clone());
         self.open_dropped(dropped);
-        panels::show(self, ui);
-        for action in std::mem::take(&mut self.queue) {
+        self.parse();
+        let (known, mut view) = self.parts();
+        let mut queue = Queue::new();
+        panels::show(known, &mut view, &mut queue, ui);
+        for action in queue {
             self.act(action);
         }
         if self.window.ctx.input(|input| input.pointer.any_pressed() || input.pointer.any_released()) {

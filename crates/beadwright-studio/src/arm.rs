@@ -1,6 +1,7 @@
 //! The arm of the robot cell, in its pose with the torch at a place of the plan.
 
-use crate::studio::Studio;
+use crate::known::Known;
+use crate::view::ViewState;
 use beadwright::robot::body::{Capsule, capsules};
 use beadwright::robot::{Cell, Joints, Reach, Stop};
 use glam::DVec3;
@@ -51,31 +52,31 @@ pub fn stand(cell: &Cell, reach: &Reach, place: &Place) -> Option<Stand> {
     Some(Stand { joints, margin: arm.margins(&joints).least(), links: links.unwrap_or_default() })
 }
 
-impl Studio {
+impl Known<'_> {
     /// Where the torch is: as it plays, at the chosen bead, or at the end of what is shown.
-    pub(crate) fn torch_place(&self) -> Option<Place> {
+    pub(crate) fn torch_place(self, view: &ViewState) -> Option<Place> {
         let scene = &self.plans.own.scene;
-        if self.view.torch.is_some() {
-            let now = scene.at_time(self.view.seconds)?;
+        if view.torch.is_some() {
+            let now = scene.at_time(view.seconds)?;
             let beads = scene.layer(now.layer)?;
             let pass = beads.pass_of(now.segment.min(beads.len().checked_sub(1)?));
             return Some(Place { layer: now.layer, pass, at: now.point });
         }
-        if let Some(chosen) = self.view.chosen.and_then(|chosen| self.pick(chosen)) {
+        if let Some(chosen) = view.chosen.and_then(|chosen| self.pick(chosen)) {
             let bead = scene.layer(chosen.layer)?.beads().get(chosen.segment)?;
             let at = (bead.from() + bead.to()).as_dvec3() / 2.0;
             return Some(Place { layer: chosen.layer, pass: chosen.pass, at });
         }
-        let layer = self.view.last;
+        let layer = view.last;
         let beads = scene.layer(layer)?;
-        let shown = (self.view.progress * beads.len() as f64).round() as usize;
+        let shown = (view.progress * beads.len() as f64).round() as usize;
         let bead = beads.beads().get(shown.max(1) - 1)?;
         Some(Place { layer, pass: beads.pass_of(shown.max(1) - 1), at: bead.to().as_dvec3() })
     }
 
     /// The pose of the arm there; none where it is not shown, not yet computed, or cannot get there.
-    pub(crate) fn arm(&self) -> Option<Stand> {
+    pub(crate) fn arm(self, view: &ViewState) -> Option<Stand> {
         let (cell, reach) = (self.jobs.cell.as_ref()?, self.jobs.reach.as_ref()?);
-        stand(cell, reach, &self.torch_place()?).filter(|_| self.view.robot)
+        stand(cell, reach, &self.torch_place(view)?).filter(|_| view.robot)
     }
 }

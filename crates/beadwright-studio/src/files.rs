@@ -113,7 +113,7 @@ impl Studio {
             Ask::SavePicture => named("png"),
             Ask::Open | Ask::Folder | Ask::OpenProfile | Ask::OpenBeads | Ask::OpenScan => String::new(),
         };
-        self.jobs.typed = Some((what, first));
+        (self.jobs.typed, self.view.typed) = (Some(what), first);
     }
 
     pub(crate) fn answered(&mut self, what: Ask, path: &Path) {
@@ -154,7 +154,7 @@ impl Studio {
     pub fn save_picture(&mut self, path: &Path) {
         const SIZE: [u32; 2] = [1920, 1200];
         let Some(render_state) = &self.window.render_state else { return };
-        let style = self.style();
+        let style = self.known().style(&self.view);
         let picture = self.solid.picture(render_state, &self.plans.own.scene, &style, SIZE);
         let written = picture.and_then(|(width, height, pixels)| {
             let (colours, format) = (image::ColorType::Rgba8, image::ImageFormat::Png);

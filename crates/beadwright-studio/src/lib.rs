@@ -16,6 +16,7 @@
 //! | [`arm`] | the robot's pose with the torch at a place |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
+//! | `known` | window, project, plans, background work: what panels read; and what they can change |
 //! | `panels` | parameters, layers, totals, findings, plots, export: one file each |
 //! | `files`, [`export`] | opening and writing files |
 //! | [`disk`] | where files lie: on the disk; in a browser, what the user has handed over, and downloads |
@@ -37,6 +38,7 @@ pub mod form;
 pub mod heat;
 pub mod history;
 pub mod jobs;
+mod known;
 mod panels;
 pub mod planner;
 mod process;

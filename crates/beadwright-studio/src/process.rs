@@ -16,7 +16,8 @@ impl Studio {
     /// Uses the first of the profile's dialects to write programs in and, unless a cell was chosen by hand, a cell whose
     /// robot speaks it.
     pub(crate) fn follow_profile(&mut self) {
-        let posts = self.parsed().map(|parsed| parsed.profile.posts.clone()).unwrap_or_default();
+        self.parse();
+        let posts = self.known().parsed().map(|parsed| parsed.profile.posts.clone()).unwrap_or_default();
         let Some(post) = posts.into_iter().find(|post| dialect::find(post).is_some()) else { return };
         let speaker = SPEAKERS.iter().find(|(language, _)| *language == post);
         if let Some((_, cell)) = speaker.filter(|_| !self.view.cell_chosen) {

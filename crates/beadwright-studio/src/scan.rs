@@ -2,6 +2,7 @@
 
 use crate::compared::{Compared, compare, read};
 use crate::jobs::{self, Job};
+use crate::known::Known;
 use crate::studio::Studio;
 use crate::view::Mode;
 use crate::view3d::Scanned;
@@ -25,15 +26,7 @@ impl Studio {
 
     /// The scan, as far as it was compared with the part in view.
     pub fn scan(&self) -> Option<&Compared> {
-        let own = &self.plans.own;
-        let (part, _) = (own.part.as_ref()?, own.scene.scan()?);
-        self.jobs.scan.as_ref().filter(|scan| Arc::ptr_eq(&scan.with.0, part))
-    }
-
-    /// Whether the part in view is a preform, and no scan is open.
-    pub(crate) fn has_stock(&self) -> bool {
-        let is_preform = self.plans.own.part.as_deref().is_some_and(|part| part.milled().is_some());
-        is_preform && self.jobs.scan.is_none()
+        self.known().scan()
     }
 
     /// The part that a scan can be compared with, and what is left of it to be milled off, mm.
@@ -77,5 +70,20 @@ impl Studio {
         let same = Arc::ptr_eq(&open.with.0, &with.0) && open.with.1 == with.1 && self.scan().is_some();
         let (name, scan) = (open.name.clone(), open.scan.clone());
         (!same).then(|| compare(&self.window.ctx, name, Box::new(|| Ok(scan)), with))
+    }
+}
+
+impl<'a> Known<'a> {
+    /// The scan, as far as it was compared with the part in view.
+    pub(crate) fn scan(self) -> Option<&'a Compared> {
+        let own = &self.plans.own;
+        let (part, _) = (own.part.as_ref()?, own.scene.scan()?);
+        self.jobs.scan.as_ref().filter(|scan| Arc::ptr_eq(&scan.with.0, part))
+    }
+
+    /// Whether the part in view is a preform, and no scan is open.
+    pub(crate) fn has_stock(self) -> bool {
+        let is_preform = self.plans.own.part.as_deref().is_some_and(|part| part.milled().is_some());
+        is_preform && self.jobs.scan.is_none()
     }
 }

@@ -1,127 +1,29 @@
 //! The program: window, project, plans, background work, views.
 
-use crate::actions::Action;
-use crate::compared::Compared;
-use crate::export::Export;
+pub use crate::known::Message;
+
 use crate::form::Parsed;
-use crate::heat::Temperatures;
 use crate::history::History;
-use crate::jobs::{Answer, Ask, Job};
+use crate::known::{Jobs, Known, Open, Other, Plans, View, Window};
 use crate::planner::{Planner, Urgency};
 use crate::project::Project;
-use crate::settings::{Settings, Store};
+use crate::settings::Store;
 use crate::state::PlanState;
 use crate::steps::Looked;
-use crate::text::Language;
 use crate::theme;
-use crate::view::{Mode, ViewState};
+use crate::view::ViewState;
 use crate::view2d::View2d;
-use crate::view3d::{Camera, Pick, Plate, Style, View3d};
-use beadwright::bead::library::BeadLibrary;
+use crate::view3d::{Camera, View3d};
 use beadwright::fill::StrategyName;
 use beadwright::profile::{Profile, edit};
-use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context, ViewportCommand};
 use eframe::egui_wgpu::RenderState;
 use eframe::egui_wgpu::wgpu::DeviceType;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
 
-/// A second plan of the same part, with another strategy.
-pub struct Other {
-    /// The strategy.
-    pub strategy: StrategyName,
-    /// Its planner.
-    pub planner: Planner,
-    /// Its plan.
-    pub plan: PlanState,
-    /// Its steps in the layer in view.
-    pub looked: Looked,
-    /// Its view of a layer.
-    pub flat: View2d,
-    /// Its view in 3-D.
-    pub solid: View3d,
-}
-
-/// The window and what is remembered.
-pub struct Window {
-    pub(crate) ctx: Context,
-    pub(crate) render_state: Option<RenderState>,
-    pub(crate) store: Store,
-    pub(crate) settings: Settings,
-    /// Pictures of the examples, in their order, as far as they are drawn.
-    pub(crate) pictures: Vec<egui::TextureHandle>,
-    /// Sentences on what went wrong or was done, newest last.
-    pub(crate) messages: Vec<Message>,
-    /// Whether there is a font with Chinese characters.
-    pub(crate) chinese: bool,
-    /// Whether the user wants to close the window despite unsaved changes and is being asked about them.
-    pub(crate) closing: bool,
-}
-
-/// The open project.
-pub struct Open {
-    pub(crate) project: History<Project>,
-    /// Its file.
-    pub(crate) file: Option<PathBuf>,
-    /// The project as last opened or saved.
-    pub(crate) saved: Project,
-    /// The project as last autosaved.
-    pub(crate) kept: Project,
-    /// Number of undo steps when it was opened.
-    pub(crate) opened: usize,
-    /// The project of a run that crashed.
-    pub(crate) lost: Option<Project>,
-    /// The profile as the form needs it, parsed from the text last read.
-    parsed: Option<Rc<Parsed>>,
-    /// A key whose value was refused, and why.
-    pub(crate) refused: Option<(String, String)>,
-}
-
-/// The plan, and a second one to compare it with.
-pub struct Plans {
-    pub(crate) planner: Planner,
-    pub(crate) own: PlanState,
-    pub(crate) other: Option<Other>,
-}
-
-/// Other background work, and its results.
-#[derive(Default)]
-pub struct Jobs {
-    pub(crate) dialog: Option<Job<Answer>>,
-    /// A path that is typed, where there is no dialog: what for, and the text so far.
-    pub(crate) typed: Option<(Ask, String)>,
-    /// What to write into the folder that is being asked for.
-    pub(crate) exporting: Export,
-    /// The steps of the strategy in the layer in view.
-    pub(crate) looked: Looked,
-    pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
-    pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
-    pub(crate) reach: Option<Reach>,
-    /// The cell that this is about.
-    pub(crate) cell: Option<Cell>,
-    /// A scan to be opened.
-    pub(crate) scan_wanted: Option<PathBuf>,
-    pub(crate) scan_job: Option<Job<Result<Compared, String>>>,
-    /// A scan of the built part.
-    pub(crate) scan: Option<Compared>,
-    /// Measured beads to look at.
-    pub(crate) beads: Option<BeadLibrary>,
-}
-
-impl Jobs {
-    /// Whether nothing is being computed.
-    fn is_idle(&self) -> bool {
-        let computes = self.reach_job.is_some()
-            || self.heat_job.is_some()
-            || self.scan_job.is_some()
-            || self.scan_wanted.is_some();
-        !computes && !self.looked.is_busy()
-    }
-}
-
-/// The program, as the panels show it. Panels change only the view; everything else they ask for by a queue.
+/// The program. Panels can change only the view; everything else they ask for by a queue.
 pub struct Studio {
     pub(crate) window: Window,
     pub(crate) open: Open,
@@ -130,17 +32,9 @@ pub struct Studio {
     pub(crate) view: ViewState,
     pub(crate) solid: View3d,
     pub(crate) flat: View2d,
-    /// What to do once the panels are drawn.
-    pub(crate) queue: Vec<Action>,
-}
-
-/// A message in the window.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Message {
-    /// Whether something went wrong.
-    pub error: bool,
-    /// The sentence.
-    pub text: String,
+    /// The views of the plan with another strategy.
+    pub(crate) their_solid: View3d,
+    pub(crate) their_flat: View2d,
 }
 
 impl Studio {
@@ -175,15 +69,22 @@ impl Studio {
             view: ViewState::default(),
             solid: View3d::default(),
             flat: View2d::default(),
-            queue: Vec::new(),
+            their_solid: View3d::default(),
+            their_flat: View2d::default(),
         };
         studio.apply_theme();
         studio
     }
 
-    /// Asks for something to be done once the panels are drawn.
-    pub(crate) fn request(&mut self, action: Action) {
-        self.queue.push(action);
+    /// What panels may read.
+    pub(crate) fn known(&self) -> Known<'_> {
+        Known { window: &self.window, open: &self.open, plans: &self.plans, jobs: &self.jobs }
+    }
+
+    /// What panels may read, and what they may change.
+    pub(crate) fn parts(&mut self) -> (Known<'_>, View<'_>) {
+        let Self { window, open, plans, jobs, view, solid, flat, their_solid, their_flat } = self;
+        (Known { window, open, plans, jobs }, View { state: view, solid, flat, their_solid, their_flat })
     }
 
     /// Offers to restore the project of a run that crashed, if there is one.
@@ -199,22 +100,7 @@ impl Studio {
 
     /// The text of a key in the language of the window.
     pub(crate) fn t(&self, key: &'static str) -> &'static str {
-        self.language().text(key)
-    }
-
-    /// Whether the plan is one for a printer, which has filament and no arc.
-    pub(crate) fn prints(&self) -> bool {
-        self.plans.own.profile.as_ref().is_some_and(|profile| profile.prints())
-    }
-
-    /// The text of a key in the words of the process: those of welding, or of printing where they differ.
-    pub(crate) fn worded(&self, key: &'static str) -> &'static str {
-        let printed = self.prints().then(|| self.language().find(&format!("fdm {key}"))).flatten();
-        printed.unwrap_or_else(|| self.t(key))
-    }
-
-    pub(crate) fn language(&self) -> Language {
-        if self.window.chinese { self.window.settings.language } else { Language::English }
+        self.known().t(key)
     }
 
     /// The project.
@@ -227,13 +113,12 @@ impl Studio {
         self.open.file.as_deref()
     }
 
-    /// The profile as its form needs it.
-    pub(crate) fn parsed(&mut self) -> Option<Rc<Parsed>> {
+    /// Parses the profile for its form, if it has changed.
+    pub(crate) fn parse(&mut self) {
         let text = &self.open.project.now().profile;
         if self.open.parsed.as_ref().is_none_or(|parsed| parsed.text != *text) {
             self.open.parsed = Parsed::of(text).map(Rc::new);
         }
-        self.open.parsed.clone()
     }
 
     /// The plan, as far as it has come.
@@ -272,47 +157,6 @@ impl Studio {
         if self.window.messages.last() != Some(&message) {
             self.window.messages.push(message);
         }
-    }
-
-    /// What is shown now.
-    pub(crate) fn style(&self) -> Style {
-        let view = &self.view;
-        let inner = view.scan && self.scan().is_some() || view.stock && self.has_stock();
-        let scan = inner && view.mode == Mode::Solid && !view.laying;
-        let arm = self.arm();
-        let at_arm = self.torch_place().filter(|_| arm.is_some()).map(|place| place.at);
-        let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
-        Style {
-            colour: view.colour,
-            mesh: view.mesh || view.laying,
-            scan,
-            travels: view.show.travels && !scan,
-            starts: view.show.starts && !scan,
-            marks_from: if view.all_marks { 0 } else { view.last },
-            // Beads would be in front of the faces to be clicked, and in front of the scan.
-            beads: view.show.beads && !view.laying && !scan,
-            layers: view.first..=view.last,
-            segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
-            section: view.section,
-            plate: self.plate().filter(|_| view.plate),
-            torch: view.torch.or(at_arm),
-            arm: arm.map(|arm| arm.links).unwrap_or_default(),
-            highlight: view.chosen.and_then(|chosen| self.pick(chosen)),
-            dark: !self.window.settings.light,
-        }
-    }
-
-    /// The plate on which the part is built, if the profile has one.
-    pub(crate) fn plate(&self) -> Option<Plate> {
-        let plate = self.plans.own.profile.as_ref()?.substrate.as_ref()?;
-        let (low, high) = self.plans.own.part.as_ref()?.bounds();
-        let (low, high) = (low.truncate() - plate.margin, high.truncate() + plate.margin);
-        Some(Plate { low, high, thickness: plate.thickness })
-    }
-
-    pub(crate) fn pick(&self, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
-        let span = self.plans.own.scene.layer(layer)?.passes().get(pass)?;
-        Some(Pick { layer, pass, segment: span.segments.start + piece })
     }
 
     /// Switches to another project.
@@ -416,9 +260,8 @@ impl Studio {
             planner: Planner::new(bell(&self.window.ctx, self.window.render_state.as_ref())),
             plan: PlanState::default(),
             looked: Looked::default(),
-            flat: View2d::default(),
-            solid: View3d::default(),
         };
+        (self.their_solid, self.their_flat) = (View3d::default(), View2d::default());
         if self.project().source.is_some() {
             other.plan.restart();
             other.planner.plan(&with_strategy(self.project().clone(), strategy), self.view.last);

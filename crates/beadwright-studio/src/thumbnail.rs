@@ -5,6 +5,9 @@ use beadwright::model::Mesh;
 use eframe::egui::{Color32, ColorImage};
 use glam::{DVec2, DVec3};
 
+/// Size of the picture of an example in the window, points.
+pub const SIZE: [usize; 2] = [148, 104];
+
 /// Samples along each side of a pixel.
 const SAMPLES: usize = 2;
 

@@ -90,6 +90,8 @@ pub struct ViewState {
     pub cell_chosen: bool,
     /// The text searched for among the parameters.
     pub search: String,
+    /// The path that is typed where there is no dialog.
+    pub typed: String,
     /// Whether the list of keys is shown.
     pub keys: bool,
     /// The layer wanted as the highest one; the top layer if none is wanted, or while there are fewer layers.
@@ -130,6 +132,7 @@ impl Default for ViewState {
             cell: beadwright::robot::cell::BUILT_IN[0].0.to_owned(),
             cell_chosen: false,
             search: String::new(),
+            typed: String::new(),
             keys: false,
             wanted: None,
             left: None,

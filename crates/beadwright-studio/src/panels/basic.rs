@@ -10,7 +10,7 @@ const NAMES: f32 = 120.0;
 pub(super) fn show(form: &mut Form<'_>, ui: &mut Ui) {
     for key in form::BASIC {
         let Some(field) = form::field(key).filter(|_| form.has(key)) else { continue };
-        let language = form.studio.language();
+        let language = form.known.language();
         let name = language.word("basic", key);
         Grid::new(key).num_columns(2).min_col_width(NAMES).show(ui, |ui| form.row(ui, field, name));
         ui.label(RichText::new(language.word("why", key)).small().weak());

@@ -1,23 +1,23 @@
 //! The chosen bead in one line, the same over every view.
 
 use super::place;
-use crate::studio::Studio;
+use crate::known::{Known, View};
 use crate::view::Mode;
 use eframe::egui::Ui;
 
-pub(super) fn show(studio: &Studio, ui: &mut Ui) {
+pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
     // Always one line, so that the view stays where it is.
-    if studio.view.laying {
-        ui.strong(studio.t("lay-hint"));
+    if view.state.laying {
+        ui.strong(known.t("lay-hint"));
         return;
     }
-    if studio.view.placing && studio.view.mode == Mode::Solid {
-        ui.strong(place::told(studio));
+    if view.state.placing && view.state.mode == Mode::Solid {
+        ui.strong(place::told(known, view));
         return;
     }
-    ui.horizontal(|ui| match figures(studio) {
+    ui.horizontal(|ui| match figures(known, view) {
         Some(figures) => {
-            ui.strong(studio.t("chosen"));
+            ui.strong(known.t("chosen"));
             for (i, text) in figures.into_iter().enumerate() {
                 if i > 0 {
                     ui.weak("·");
@@ -25,25 +25,25 @@ pub(super) fn show(studio: &Studio, ui: &mut Ui) {
                 ui.label(text);
             }
         }
-        None => drop(ui.weak(studio.t("nothing-chosen"))),
+        None => drop(ui.weak(known.t("nothing-chosen"))),
     });
 }
 
 /// Layer, pass, kind, width, speed, time and temperature of the chosen bead.
-fn figures(studio: &Studio) -> Option<Vec<String>> {
-    let (layer, pass, piece) = studio.view.chosen?;
-    let (plan, scene) = (&studio.plans.own, &studio.plans.own.scene);
+fn figures(known: Known<'_>, view: &View<'_>) -> Option<Vec<String>> {
+    let (layer, pass, piece) = view.state.chosen?;
+    let (plan, scene) = (&known.plans.own, &known.plans.own.scene);
     let beads = scene.layer(layer)?;
     let (span, found) = (beads.passes().get(pass)?, plan.layer(layer)?.passes.get(pass)?);
     let segment = span.segments.start + piece;
     let seconds = scene.seconds_before(layer) + beads.times(segment)?.0;
     let mut figures = vec![
-        format!("{} {}", studio.t("layer"), layer + 1),
-        format!("{} {} / {}", studio.t("pass"), pass + 1, beads.passes().len()),
-        studio.language().word("kind", found.kind.name()),
-        format!("{} {:.2} mm", studio.t("width"), beads.beads().get(segment)?.width()),
+        format!("{} {}", known.t("layer"), layer + 1),
+        format!("{} {} / {}", known.t("pass"), pass + 1, beads.passes().len()),
+        known.language().word("kind", found.kind.name()),
+        format!("{} {:.2} mm", known.t("width"), beads.beads().get(segment)?.width()),
         format!("{:.2} mm/s", beads.speed(segment)?),
-        format!("{} {}", studio.t("at-time"), clock(seconds)),
+        format!("{} {}", known.t("at-time"), clock(seconds)),
     ];
     figures.extend(scene.temperature(layer, pass).map(|degrees| format!("{degrees:.0} °C")));
     Some(figures)

@@ -2,37 +2,37 @@
 
 use super::{bead, compare, solid};
 use crate::actions::Action;
+use crate::known::{Known, Queue, View};
 use crate::state::PlanState;
 use crate::steps::Looked;
-use crate::studio::Studio;
 use crate::view::Mode;
 use crate::view2d::{Drawing, Named, View2d};
 use eframe::egui::{CentralPanel, Ui};
 
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    CentralPanel::default().show(ui, |ui| match studio.view.mode {
-        Mode::Solid => solid::show(studio, ui),
-        Mode::Layer => layer(studio, ui),
-        Mode::Compare => compare::show(studio, ui),
+pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    CentralPanel::default().show(ui, |ui| match view.state.mode {
+        Mode::Solid => solid::show(known, view, queue, ui),
+        Mode::Layer => layer(known, view, queue, ui),
+        Mode::Compare => compare::show(known, view, queue, ui),
     });
 }
 
-fn layer(studio: &mut Studio, ui: &mut Ui) {
-    bar(studio, ui);
-    bead::show(studio, ui);
-    look_closer(studio);
-    let words = words(studio, "view-2d-label");
-    let (scale, looked, layer) = (Some(studio.t("bead-heights")), &studio.jobs.looked, studio.view.last);
-    if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, ui, &studio.view, looked, words, scale) {
-        studio.view.chosen = picked.map(|(pass, piece)| (layer, pass, piece));
+fn layer(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    bar(known, view, ui);
+    bead::show(known, view, ui);
+    look_closer(known, view, queue);
+    let words = words(known, "view-2d-label");
+    let (scale, looked, layer) = (Some(known.t("bead-heights")), &known.jobs.looked, view.state.last);
+    if let Some(picked) = flat(&known.plans.own, view.flat, ui, view.state, looked, words, scale) {
+        view.state.chosen = picked.map(|(pass, piece)| (layer, pass, piece));
     }
 }
 
 /// The words of a view with this name.
-pub(super) fn words(studio: &Studio, label: &'static str) -> Words {
-    let hybrid = ["pocket-kept", "pocket-left", "skeleton-region"].map(|key| studio.t(key));
-    let steps = Named { hybrid, one_loop: ["rings", "flips"].map(|key| studio.t(key)) };
-    Words { label: studio.t(label), nothing: studio.t("nothing-laid"), steps }
+pub(super) fn words(known: Known<'_>, label: &'static str) -> Words {
+    let hybrid = ["pocket-kept", "pocket-left", "skeleton-region"].map(|key| known.t(key));
+    let steps = Named { hybrid, one_loop: ["rings", "flips"].map(|key| known.t(key)) };
+    Words { label: known.t(label), nothing: known.t("nothing-laid"), steps }
 }
 
 /// What the view of a layer is called, what is said of an empty one, and what the steps of strategies are called.
@@ -68,34 +68,34 @@ pub(super) fn flat(
 }
 
 /// What is shown of a layer.
-pub(super) fn bar(studio: &mut Studio, ui: &mut Ui) {
+pub(super) fn bar(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         let texts = ["show-beads", "show-paths", "show-travels", "show-starts", "show-heights", "show-regions"];
-        let [beads, paths, travels, starts, heights, regions] = texts.map(|key| studio.t(key));
-        let hint = studio.t("show-regions-hint");
-        let show = &mut studio.view.show;
+        let [beads, paths, travels, starts, heights, regions] = texts.map(|key| known.t(key));
+        let hint = known.t("show-regions-hint");
+        let show = &mut view.state.show;
         ui.checkbox(&mut show.beads, beads);
         ui.checkbox(&mut show.paths, paths);
         ui.checkbox(&mut show.travels, travels);
         ui.checkbox(&mut show.starts, starts);
         ui.checkbox(&mut show.heights, heights);
         ui.checkbox(&mut show.regions, regions).on_hover_text(hint);
-        let measure = studio.t("measure");
-        if ui.toggle_value(&mut studio.flat.measuring, measure).changed() {
-            studio.flat.clear_measure();
+        let measure = known.t("measure");
+        if ui.toggle_value(&mut view.flat.measuring, measure).changed() {
+            view.flat.clear_measure();
         }
-        if let Some(length) = studio.flat.measured() {
+        if let Some(length) = view.flat.measured() {
             ui.label(format!("{length:.2} mm"));
         }
     });
 }
 
 /// Has the steps of the strategies in view computed when they are to be shown.
-pub(super) fn look_closer(studio: &mut Studio) {
-    let layer = studio.view.last;
-    let others = studio.plans.other.as_ref().filter(|_| studio.view.mode == Mode::Compare);
-    let known = studio.jobs.looked.knows(layer) && others.is_none_or(|other| other.looked.knows(layer));
-    if studio.view.show.regions && !known {
-        studio.request(Action::LookCloser);
+pub(super) fn look_closer(known: Known<'_>, view: &View<'_>, queue: &mut Queue) {
+    let layer = view.state.last;
+    let others = known.plans.other.as_ref().filter(|_| view.state.mode == Mode::Compare);
+    let known = known.jobs.looked.knows(layer) && others.is_none_or(|other| other.looked.knows(layer));
+    if view.state.show.regions && !known {
+        queue.push(Action::LookCloser);
     }
 }

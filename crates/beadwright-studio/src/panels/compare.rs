@@ -3,85 +3,84 @@
 use super::centre::{bar, flat, look_closer, words};
 use super::{bead, solid, totals};
 use crate::actions::Action;
+use crate::known::{Known, Queue, View};
 use crate::planner::Failure;
-use crate::studio::Studio;
 use crate::view3d::Style;
 use beadwright::fill::StrategyName;
 use eframe::egui::{ComboBox, Grid, Ui};
 
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     ui.horizontal(|ui| {
-        choose(studio, ui);
-        let text = studio.t("compare-solid");
-        if ui.checkbox(&mut studio.view.compare_solid, text).changed() {
-            studio.solid.fit();
+        choose(known, queue, ui);
+        let text = known.t("compare-solid");
+        if ui.checkbox(&mut view.state.compare_solid, text).changed() {
+            view.solid.fit();
         }
     });
-    let solid = studio.view.compare_solid;
+    let solid = view.state.compare_solid;
     if solid {
-        ui.horizontal_wrapped(|ui| solid::bar(studio, ui));
-        ui.horizontal(|ui| solid::colours(studio, ui));
+        ui.horizontal_wrapped(|ui| solid::bar(known, view, queue, ui));
+        ui.horizontal(|ui| solid::colours(known, view, queue, ui));
     } else {
-        bar(studio, ui);
+        bar(known, view, ui);
     }
-    bead::show(studio, ui);
+    bead::show(known, view, ui);
     ui.columns(2, |columns| {
         let [left, right] = columns else { return };
-        left.strong(studio.plans.own.header.as_ref().map_or("", |header| &header.strategy));
-        if let Some(other) = &studio.plans.other {
+        left.strong(known.plans.own.header.as_ref().map_or("", |header| &header.strategy));
+        if let Some(other) = &known.plans.other {
             if let Some(Failure::Sentence(text)) = &other.plan.failure {
                 right.colored_label(right.visuals().error_fg_color, text);
             }
             right.strong(other.strategy.name());
         }
-        if solid { in_solid(studio, left, right) } else { in_layers(studio, left, right) }
+        if solid { in_solid(known, view, queue, left, right) } else { in_layers(known, view, queue, left, right) }
     });
 }
 
 /// One layer of both: when one view is moved, the other follows.
-fn in_layers(studio: &mut Studio, left: &mut Ui, right: &mut Ui) {
-    look_closer(studio);
-    let [own, theirs] = ["view-2d-label", "view-2d-other"].map(|key| words(studio, key));
-    let before = studio.flat.eye();
-    if let Some(picked) = flat(&studio.plans.own, &mut studio.flat, left, &studio.view, &studio.jobs.looked, own, None)
-    {
-        studio.view.chosen = picked.map(|(pass, piece)| (studio.view.last, pass, piece));
+fn in_layers(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, left: &mut Ui, right: &mut Ui) {
+    look_closer(known, view, queue);
+    let [own, theirs] = ["view-2d-label", "view-2d-other"].map(|key| words(known, key));
+    let before = view.flat.eye();
+    if let Some(picked) = flat(&known.plans.own, view.flat, left, view.state, &known.jobs.looked, own, None) {
+        view.state.chosen = picked.map(|(pass, piece)| (view.state.last, pass, piece));
     }
-    let Some(other) = &mut studio.plans.other else { return };
-    if studio.flat.eye() != before {
-        other.flat.follow(&studio.flat);
+    let Some(other) = &known.plans.other else { return };
+    if view.flat.eye() != before {
+        view.their_flat.follow(view.flat);
     }
-    let before = other.flat.eye();
-    flat(&other.plan, &mut other.flat, right, &studio.view, &other.looked, theirs, None);
-    if other.flat.eye() != before {
-        studio.flat.follow(&other.flat);
+    let before = view.their_flat.eye();
+    flat(&other.plan, view.their_flat, right, view.state, &other.looked, theirs, None);
+    if view.their_flat.eye() != before {
+        view.flat.follow(view.their_flat);
     }
 }
 
 /// All layers of both, with one camera.
-fn in_solid(studio: &mut Studio, left: &mut Ui, right: &mut Ui) {
-    let [own, theirs] = ["view-3d-label", "view-3d-other"].map(|key| studio.t(key));
+fn in_solid(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, left: &mut Ui, right: &mut Ui) {
+    let [own, theirs] = ["view-3d-label", "view-3d-other"].map(|key| known.t(key));
     // A bead of one plan is not one of the other's.
-    let style = studio.style();
+    let style = known.style(view.state);
     let plain = Style { segments_of_last: None, highlight: None, torch: None, arm: Vec::new(), ..style.clone() };
-    solid::view(studio, left, &style, own);
-    let (camera, state) = (studio.solid.camera, studio.window.render_state.as_ref());
-    let Some(other) = &mut studio.plans.other else { return };
-    other.solid.camera = camera;
-    other.solid.caption.clone_from(&studio.solid.caption);
-    other.solid.no_adapter.clone_from(&studio.solid.no_adapter);
-    other.solid.hold();
-    other.solid.show(right, state, &other.plan.scene, &plain, theirs);
-    if other.solid.camera != camera {
-        studio.solid.camera = other.solid.camera;
+    solid::picture(known, view, queue, left, &style, own);
+    let (camera, state) = (view.solid.camera, known.window.render_state.as_ref());
+    let Some(other) = &known.plans.other else { return };
+    view.their_solid.camera = camera;
+    view.their_solid.caption.clone_from(&view.solid.caption);
+    view.their_solid.no_adapter.clone_from(&view.solid.no_adapter);
+    view.their_solid.hold();
+    view.their_solid.show(right, state, &other.plan.scene, &plain, theirs);
+    if view.their_solid.camera != camera {
+        view.solid.camera = view.their_solid.camera;
         right.ctx().request_repaint();
     }
 }
 
-fn choose(studio: &mut Studio, ui: &mut Ui) {
-    let now = studio.plans.other.as_ref().map(|other| other.strategy);
+fn choose(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
+    let now = known.plans.other.as_ref().map(|other| other.strategy);
     let mut chosen = None;
-    let label = ui.label(studio.t("other-strategy"));
+    let label = ui.label(known.t("other-strategy"));
     let combo =
         ComboBox::from_id_salt("other-strategy").selected_text(now.map_or("–", StrategyName::name)).show_ui(ui, |ui| {
             for &strategy in StrategyName::ALL {
@@ -92,32 +91,32 @@ fn choose(studio: &mut Studio, ui: &mut Ui) {
         });
     combo.response.labelled_by(label.id);
     if let Some(strategy) = chosen.filter(|_| chosen != now) {
-        studio.request(Action::CompareWith(strategy));
+        queue.push(Action::CompareWith(strategy));
     }
 }
 
 /// Totals of both plans side by side.
-pub(super) fn differences(studio: &Studio, ui: &mut Ui) {
-    let Some(other) = &studio.plans.other else { return };
-    let (own, theirs) = (totals::rows_of(&studio.plans.own), totals::rows_of(&other.plan));
-    let names = [studio.plans.own.header.as_ref().map_or("", |header| header.strategy.as_str()), other.strategy.name()];
+pub(super) fn differences(known: Known<'_>, ui: &mut Ui) {
+    let Some(other) = &known.plans.other else { return };
+    let (own, theirs) = (totals::rows_of(&known.plans.own), totals::rows_of(&other.plan));
+    let names = [known.plans.own.header.as_ref().map_or("", |header| header.strategy.as_str()), other.strategy.name()];
     // As many tables side by side as fit leave more room for the views.
     const WIDTH: f32 = 400.0;
     let tables = ((ui.available_width() / WIDTH) as usize).clamp(1, own.len().max(1));
     let rows = own.len().div_ceil(tables).max(1);
     ui.columns(tables, |columns| {
-        columns.iter_mut().zip(own.chunks(rows)).for_each(|(ui, rows)| table(studio, ui, names, rows, &theirs));
+        columns.iter_mut().zip(own.chunks(rows)).for_each(|(ui, rows)| table(known, ui, names, rows, &theirs));
     });
 }
 
 /// Some of the totals: their name, and the value of each plan.
-fn table(studio: &Studio, ui: &mut Ui, names: [&str; 2], own: &[Row], theirs: &[Row]) {
+fn table(known: Known<'_>, ui: &mut Ui, names: [&str; 2], own: &[Row], theirs: &[Row]) {
     Grid::new(("differences", own.first())).num_columns(3).spacing([12.0, 2.0]).striped(true).show(ui, |ui| {
         ui.label("");
         names.into_iter().for_each(|name| drop(ui.strong(name)));
         ui.end_row();
         for (name, value) in own {
-            totals::named(studio, ui, name);
+            totals::named(known, ui, name);
             ui.label(value);
             ui.label(theirs.iter().find(|(n, _)| n == name).map_or("…", |(_, value)| value));
             ui.end_row();

@@ -1,7 +1,7 @@
 //! What the checks found; a click goes there.
 
 use super::words;
-use crate::studio::Studio;
+use crate::known::{Known, View};
 use crate::view::Mode;
 use beadwright::Finding;
 use beadwright::check::{self, Check};
@@ -14,17 +14,17 @@ const FIGURES: [&str; 4] = ["void", "overfill", "outside", "towers"];
 /// Most findings listed for one check.
 const LISTED: usize = 100;
 
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let Some(findings) = studio.plans.own.findings.clone() else {
-        ui.weak(studio.t("findings-wait"));
+pub(super) fn show(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
+    let Some(findings) = known.plans.own.findings.clone() else {
+        ui.weak(known.t("findings-wait"));
         return;
     };
-    let own = &studio.plans.own;
+    let own = &known.plans.own;
     let repaired = own.part.as_ref().map(|part| part.repair().sentences()).unwrap_or_default();
     let grouped = check::grouped(&findings);
     let all = own.summary.as_ref().map_or(grouped.clone(), |summary| check::all_findings(summary, &repaired, &grouped));
     if all.is_empty() {
-        ui.label(studio.t("no-findings"));
+        ui.label(known.t("no-findings"));
     }
     for finding in &all {
         let visuals = ui.visuals();
@@ -34,11 +34,11 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             Severity::Note => visuals.weak_text_color(),
         };
         match check::by_name(finding.kind) {
-            Some(check) => checked(studio, ui, check, &findings, colour),
+            Some(check) => checked(known, view, ui, check, &findings, colour),
             None => {
-                let title = format!("{} ({})", finding.kind, studio.t(word(finding.severity)));
+                let title = format!("{} ({})", finding.kind, known.t(word(finding.severity)));
                 ui.colored_label(colour, title);
-                one(studio, ui, finding);
+                one(known, view, ui, finding);
             }
         }
     }
@@ -50,52 +50,52 @@ fn word(severity: Severity) -> &'static str {
 }
 
 /// All that one check found.
-fn checked(studio: &mut Studio, ui: &mut Ui, check: &Check, findings: &[Finding], colour: Color32) {
+fn checked(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, check: &Check, findings: &[Finding], colour: Color32) {
     let found: Vec<&Finding> = findings.iter().filter(|finding| finding.kind == check.name).collect();
-    let title = format!("{} ({}, {})", check.name, found.len(), studio.t(word(check.severity())));
+    let title = format!("{} ({}, {})", check.name, found.len(), known.t(word(check.severity())));
     let title = CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name);
     let opened = title.default_open(true).show(ui, |ui| {
         for (key, text) in [("why", check.why), ("remedy", check.remedy)] {
-            explained(studio, ui.weak(format!("{}: {text}.", studio.t(key))), check.name, text);
+            explained(known, ui.weak(format!("{}: {text}.", known.t(key))), check.name, text);
         }
         let groups = grouped(&found);
         for group in groups.iter().take(LISTED) {
-            listed(studio, ui, group);
+            listed(known, view, ui, group);
         }
         if groups.len() > LISTED {
             ui.weak(format!("… {}", groups.len() - LISTED));
         }
     });
-    explained(studio, opened.header_response, check.name, check.name);
+    explained(known, opened.header_response, check.name, check.name);
 }
 
 /// One finding, or many that say the same: the first of them, and the others on request.
-fn listed(studio: &mut Studio, ui: &mut Ui, group: &[&Finding]) {
+fn listed(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, group: &[&Finding]) {
     let [first, rest @ ..] = group else { return };
-    one(studio, ui, first);
+    one(known, view, ui, first);
     if let Some(last) = rest.last() {
-        let title = format!("{} {}{}", group.len(), studio.t("alike"), layers(studio, first, last));
+        let title = format!("{} {}{}", group.len(), known.t("alike"), layers(known, first, last));
         CollapsingHeader::new(title).id_salt((first.kind, first.layer, first.pass, &first.text)).show(ui, |ui| {
-            rest.iter().take(LISTED).for_each(|finding| one(studio, ui, finding));
+            rest.iter().take(LISTED).for_each(|finding| one(known, view, ui, finding));
         });
     }
 }
 
-fn one(studio: &mut Studio, ui: &mut Ui, finding: &Finding) {
+fn one(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, finding: &Finding) {
     let text = sentence(finding);
     if finding.layer.is_none() {
-        explained(studio, ui.label(&text), finding.kind, &text);
+        explained(known, ui.label(&text), finding.kind, &text);
         return;
     }
-    let link = ui.link(&text).on_hover_text(studio.t("go-there"));
-    if explained(studio, link, finding.kind, &text).clicked() {
-        go_to(studio, finding);
+    let link = ui.link(&text).on_hover_text(known.t("go-there"));
+    if explained(known, link, finding.kind, &text).clicked() {
+        go_to(view, finding);
     }
 }
 
 /// The words of a text explained, where its check is about the figures of the deposit: elsewhere they are plain English.
-fn explained(studio: &Studio, response: Response, check: &str, text: &str) -> Response {
-    if FIGURES.contains(&check) { words::explained(studio, response, text) } else { response }
+fn explained(known: Known<'_>, response: Response, check: &str, text: &str) -> Response {
+    if FIGURES.contains(&check) { words::explained(known, response, text) } else { response }
 }
 
 /// Findings that follow each other and differ in their numbers only.
@@ -105,10 +105,10 @@ fn grouped<'a, 'b>(findings: &'b [&'a Finding]) -> Vec<&'b [&'a Finding]> {
 }
 
 /// The layers from one finding to another, counted from 1, in brackets.
-fn layers(studio: &Studio, first: &Finding, last: &Finding) -> String {
+fn layers(known: Known<'_>, first: &Finding, last: &Finding) -> String {
     match (first.layer, last.layer) {
-        (Some(a), Some(b)) if a != b => format!(" ({} {}–{})", studio.t("total layers"), a + 1, b + 1),
-        (Some(a), _) => format!(" ({} {})", studio.t("layer"), a + 1),
+        (Some(a), Some(b)) if a != b => format!(" ({} {}–{})", known.t("total layers"), a + 1, b + 1),
+        (Some(a), _) => format!(" ({} {})", known.t("layer"), a + 1),
         _ => String::new(),
     }
 }
@@ -120,15 +120,15 @@ fn sentence(finding: &Finding) -> String {
 }
 
 /// Shows the place of a finding: its layer, with the bead chosen.
-fn go_to(studio: &mut Studio, finding: &Finding) {
+fn go_to(view: &mut View<'_>, finding: &Finding) {
     let Some(layer) = finding.layer else { return };
-    studio.view.look_at(layer);
-    studio.view.mode = Mode::Layer;
-    studio.view.chosen = finding.pass.map(|pass| (layer, pass, 0));
+    view.state.look_at(layer);
+    view.state.mode = Mode::Layer;
+    view.state.chosen = finding.pass.map(|pass| (layer, pass, 0));
     if FIGURES.contains(&finding.kind) {
-        studio.view.show.heights = true;
+        view.state.show.heights = true;
     }
     if let Some(place) = finding.place {
-        studio.flat.look_at(place.truncate());
+        view.flat.look_at(place.truncate());
     }
 }

@@ -1,8 +1,8 @@
 //! Messages on what went wrong or was done; they stay until they are closed.
 
 use crate::actions::Action;
+use crate::known::{Known, Queue};
 use crate::planner::Failure;
-use crate::studio::Studio;
 use crate::theme;
 use eframe::egui::style::ScrollStyle;
 use eframe::egui::{RichText, ScrollArea, Ui};
@@ -11,18 +11,18 @@ use eframe::egui::{RichText, ScrollArea, Ui};
 pub(super) const HEIGHT: f32 = 70.0;
 
 /// Whether there is anything to say.
-pub(super) fn any(studio: &Studio) -> bool {
-    let failed = matches!(studio.plans.own.failure, Some(Failure::Sentence(_)));
-    failed || !studio.window.messages.is_empty() || !warnings(studio).is_empty()
+pub(super) fn any(known: Known<'_>) -> bool {
+    let failed = matches!(known.plans.own.failure, Some(Failure::Sentence(_)));
+    failed || !known.window.messages.is_empty() || !warnings(known).is_empty()
 }
 
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let failure = match &studio.plans.own.failure {
+pub(super) fn show(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
+    let failure = match &known.plans.own.failure {
         Some(Failure::Sentence(text)) => Some(text.clone()),
         _ => None,
     };
-    let (warnings, close) = (warnings(studio), studio.t("close"));
-    let nothing = (!any(studio)).then(|| studio.t("no-messages"));
+    let (warnings, close) = (warnings(known), known.t("close"));
+    let nothing = (!any(known)).then(|| known.t("no-messages"));
     // A bar that is always there shows that there is more below.
     ui.spacing_mut().scroll = ScrollStyle::solid();
     // A list that claims more than the panel has would let the panel above cover its beginning.
@@ -31,15 +31,11 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
             ui.weak(text);
         }
         if let Some(text) = failure {
-            line(ui, &text, true, || studio.plans.own.failure = None, close);
+            line(ui, &text, true, || queue.push(Action::DismissFailure), close);
         }
-        let mut closed = None;
-        for (i, message) in studio.window.messages.iter().enumerate().rev() {
-            line(ui, &message.text, message.error, || closed = Some(i), close);
+        for (i, message) in known.window.messages.iter().enumerate().rev() {
+            line(ui, &message.text, message.error, || queue.push(Action::Dismiss(i)), close);
         }
-        closed.into_iter().for_each(|i| {
-            studio.request(Action::Dismiss(i));
-        });
         for text in warnings {
             ui.label(RichText::new(format!("• {text}")).weak());
         }
@@ -58,9 +54,9 @@ fn line(ui: &mut Ui, text: &str, error: bool, close: impl FnOnce(), hint: &str) 
 }
 
 /// What was repaired in the model, and what the plan left out.
-fn warnings(studio: &Studio) -> Vec<String> {
-    let part = studio.plans.own.part.iter().flat_map(|part| part.repair().sentences());
-    let plan = studio.plans.own.summary.iter().flat_map(|summary| {
+fn warnings(known: Known<'_>) -> Vec<String> {
+    let part = known.plans.own.part.iter().flat_map(|part| part.repair().sentences());
+    let plan = known.plans.own.summary.iter().flat_map(|summary| {
         let events = summary.warnings.summaries().map(|warning| warning.sentence());
         events.chain(summary.notes.iter().cloned()).collect::<Vec<_>>()
     });

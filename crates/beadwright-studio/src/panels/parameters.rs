@@ -5,32 +5,33 @@ use crate::actions;
 use crate::actions::Action;
 use crate::form::{self, Field, Kind, Section};
 use crate::jobs::Ask;
-use crate::studio::Studio;
+use crate::known::{Known, Queue, View};
 use crate::text::Language;
 use beadwright::limit::Limit;
 use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Label, Response, RichText, TextEdit, Ui};
 
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
+pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     ui.separator();
-    ui.heading(studio.t("parameters"));
-    let Some(parsed) = studio.parsed() else { return };
-    ui.horizontal(|ui| process::profile(studio, ui));
-    if ui.button(studio.t("profile-file")).clicked() {
-        studio.request(Action::Ask(Ask::OpenProfile));
+    ui.heading(known.t("parameters"));
+    let Some(parsed) = known.parsed() else { return };
+    ui.horizontal(|ui| process::profile(known, queue, ui));
+    if ui.button(known.t("profile-file")).clicked() {
+        queue.push(Action::Ask(Ask::OpenProfile));
     }
-    let label = ui.label(studio.t("search"));
-    ui.add(TextEdit::singleline(&mut studio.view.search).desired_width(f32::INFINITY)).labelled_by(label.id);
-    let mut all = studio.window.settings.all_parameters;
-    if ui.checkbox(&mut all, studio.t("all-parameters")).changed() {
-        studio.request(Action::AllParameters(all));
+    let label = ui.label(known.t("search"));
+    ui.add(TextEdit::singleline(&mut view.state.search).desired_width(f32::INFINITY)).labelled_by(label.id);
+    let mut all = known.window.settings.all_parameters;
+    if ui.checkbox(&mut all, known.t("all-parameters")).changed() {
+        queue.push(Action::AllParameters(all));
     }
     // A search looks at all.
-    let all = all || !studio.view.search.is_empty();
+    let all = all || !view.state.search.is_empty();
     let shown = |key: &str| form::field(key).is_some() && (all || form::BASIC.contains(&key));
-    if let Some((key, reason)) = studio.open.refused.clone().filter(|(key, _)| !shown(key)) {
-        ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", studio.t("impossible")));
+    if let Some((key, reason)) = known.open.refused.clone().filter(|(key, _)| !shown(key)) {
+        ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", known.t("impossible")));
     }
-    let mut form = Form { studio, values: &parsed.values, limits: &parsed.limits };
+    let mut form =
+        Form { known, search: view.state.search.to_lowercase(), queue, values: &parsed.values, limits: &parsed.limits };
     if all {
         form::sections().iter().for_each(|section| form.section(ui, section));
     } else {
@@ -40,22 +41,25 @@ pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
 
 /// The profile while it is shown.
 pub(super) struct Form<'a> {
-    pub(super) studio: &'a mut Studio,
+    pub(super) known: Known<'a>,
+    /// What is searched for, in lower case.
+    search: String,
+    pub(super) queue: &'a mut Queue,
     values: &'a toml::Table,
     limits: &'a [Limit],
 }
 
 impl Form<'_> {
     fn section(&mut self, ui: &mut Ui, section: &Section) {
-        let search = self.studio.view.search.to_lowercase();
-        let found = |f: &&Field| search.is_empty() || self.says(section, f, &search);
+        let search = &*self.search;
+        let found = |f: &&Field| search.is_empty() || self.says(section, f, search);
         let fields: Vec<&Field> = section.fields.iter().filter(found).collect();
         if fields.is_empty() || !self.has_section(&section.key) {
             return;
         }
         let title = match &*section.key {
-            "" => self.studio.t("profile").to_owned(),
-            key => self.studio.language().word("section", key),
+            "" => self.known.t("profile").to_owned(),
+            key => self.known.language().word("section", key),
         };
         let open = (section.key == "fill" || !search.is_empty()).then_some(!search.is_empty());
         CollapsingHeader::new(title)
@@ -98,14 +102,14 @@ impl Form<'_> {
     fn reset(&mut self, ui: &mut Ui, section: &Section) {
         let own = |field: &&Field| field.optional && form::value(self.values, &field.key).is_some();
         let keys: Vec<String> = section.fields.iter().filter(own).map(|field| field.key.clone()).collect();
-        let (text, hint) = (self.studio.t("defaults"), keys.join(", "));
+        let (text, hint) = (self.known.t("defaults"), keys.join(", "));
         if !keys.is_empty() && !section.key.is_empty() && ui.small_button(text).on_hover_text(hint).clicked() {
-            self.studio.request(Action::ResetValues(keys));
+            self.queue.push(Action::ResetValues(keys));
         }
     }
 
     fn field(&mut self, ui: &mut Ui, field: &Field) {
-        let name = self.studio.language().word("name", &field.name);
+        let name = self.known.language().word("name", &field.name);
         self.row(ui, field, name);
     }
 
@@ -114,7 +118,7 @@ impl Form<'_> {
         let value = form::value(self.values, &field.key);
         let limit = form::limit(self.limits, &field.key);
         let hint = self.hint(field, limit);
-        let refused = self.studio.open.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
+        let refused = self.known.open.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
         let mut name = RichText::new(name);
         if refused {
             name = name.color(ui.visuals().error_fg_color);
@@ -124,19 +128,19 @@ impl Form<'_> {
             let (response, changed) = widget(ui, field, value.as_ref(), limit);
             response.labelled_by(label.id).on_hover_text(&hint);
             if let Some(text) = changed {
-                self.studio.request(Action::SetValue(field.key.clone(), text));
+                self.queue.push(Action::SetValue(field.key.clone(), text));
             }
             if field.optional
                 && value.is_some()
-                && ui.small_button("↺").on_hover_text(self.studio.t("default")).clicked()
+                && ui.small_button("↺").on_hover_text(self.known.t("default")).clicked()
             {
-                self.studio.request(Action::ResetValue(field.key.clone()));
+                self.queue.push(Action::ResetValue(field.key.clone()));
             }
         });
         ui.end_row();
         // Shown right where the value was typed, so that it is noticed.
-        if let Some((_, reason)) = self.studio.open.refused.as_ref().filter(|(key, _)| *key == field.key) {
-            let text = format!("{} {reason}", self.studio.t("impossible"));
+        if let Some((_, reason)) = self.known.open.refused.as_ref().filter(|(key, _)| *key == field.key) {
+            let text = format!("{} {reason}", self.known.t("impossible"));
             ui.label("");
             ui.add(Label::new(RichText::new(text).color(ui.visuals().error_fg_color)).wrap());
             ui.end_row();
@@ -146,7 +150,7 @@ impl Form<'_> {
     /// What the key means, which values it can have, and why.
     fn hint(&self, field: &Field, limit: Option<&Limit>) -> String {
         let range = limit.map(|l| {
-            let (from, to) = (self.studio.t("from"), self.studio.t("to"));
+            let (from, to) = (self.known.t("from"), self.known.t("to"));
             format!("\n{from} {} {to} {} {}: {}.", l.least, l.greatest, l.unit, l.reason)
         });
         let words = match &field.kind {

@@ -1,7 +1,7 @@
 //! The tool that moves the part on its plate: handles at its foot, and the arrow keys.
 
 use crate::actions::Action;
-use crate::studio::Studio;
+use crate::known::{Known, Queue, View};
 use crate::view3d::{Camera, Gizmo, Grip, Handle, Moved, palette};
 use eframe::egui::{
     Color32, CursorIcon, EventFilter, FontId, Key, Modifiers, Painter, Popup, Pos2, Rect, Response, Role, Sense, Shape,
@@ -44,67 +44,75 @@ impl Sight<'_> {
 }
 
 /// The switch of the tool.
-pub(super) fn switch(studio: &mut Studio, ui: &mut Ui) {
-    let [text, hint] = ["place", "place-hint"].map(|key| studio.t(key));
-    if ui.toggle_value(&mut studio.view.placing, text).on_hover_text(hint).clicked() {
-        studio.solid.fit();
+pub(super) fn switch(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
+    let [text, hint] = ["place", "place-hint"].map(|key| known.t(key));
+    if ui.toggle_value(&mut view.state.placing, text).on_hover_text(hint).clicked() {
+        view.solid.fit();
     }
 }
 
 /// What the tool needs in the picture.
-pub(super) fn around(studio: &Studio) -> Vec<DVec3> {
-    let part = studio.plans.own.part.as_ref().filter(|_| studio.view.placing);
+pub(super) fn around(known: Known<'_>, view: &View<'_>) -> Vec<DVec3> {
+    let part = known.plans.own.part.as_ref().filter(|_| view.state.placing);
     part.map(|part| Gizmo::around(part.bounds()).ring().collect()).unwrap_or_default()
 }
 
 /// The handles over the 3-D view.
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui, rect: Rect) {
-    let Some(part) = studio.plans.own.part.clone().filter(|_| studio.view.placing) else { return };
-    arrows(studio, ui);
-    let camera = studio.solid.camera;
+pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui, rect: Rect) {
+    let Some(part) = known.plans.own.part.clone().filter(|_| view.state.placing) else { return };
+    arrows(known, view, queue, ui);
+    let camera = view.solid.camera;
     let (gizmo, sight) = (Gizmo::around(part.bounds()), Sight { camera: &camera, rect });
-    let shown = gizmo.moved(studio.view.grip.map(|grip| grip.moved).unwrap_or_default());
+    let shown = gizmo.moved(view.state.grip.map(|grip| grip.moved).unwrap_or_default());
     let painter = ui.painter().with_clip_rect(rect);
     extent(&painter, &sight, part.bounds(), &gizmo, &shown);
     for (handle, name, colour) in HANDLES.into_iter().filter(|(handle, ..)| gizmo.can(*handle, &camera)) {
-        let held = studio.view.grip.is_some_and(|grip| grip.handle == handle);
+        let held = view.state.grip.is_some_and(|grip| grip.handle == handle);
         let Some(at) = sight.at(shown.tip(handle)).filter(|at| held || rect.contains(*at)) else { continue };
-        let (place, label) = (Rect::from_center_size(at, Vec2::splat(2.0 * HANDLE)), studio.t(name));
+        let (place, label) = (Rect::from_center_size(at, Vec2::splat(2.0 * HANDLE)), known.t(name));
         let response = ui.interact(place, ui.scope_id().with(name), Sense::drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, label));
         draw(&painter, &sight, &shown, handle, colour, &response);
-        drag(studio, &response, &sight, &gizmo, handle);
-        nudge(studio, ui, &response, &gizmo, handle);
+        drag(known, view, queue, &response, &sight, &gizmo, handle);
+        nudge(known, queue, ui, &response, &gizmo, handle);
         if response.dragged() {
-            figure(&painter, at, ui.visuals().strong_text_color(), told(studio));
+            figure(&painter, at, ui.visuals().strong_text_color(), told(known, view));
         }
     }
 }
 
 /// Follows a handle that is dragged; the part goes there once it is let go.
-fn drag(studio: &mut Studio, response: &Response, sight: &Sight<'_>, gizmo: &Gizmo, handle: Handle) {
+fn drag(
+    known: Known<'_>,
+    view: &mut View<'_>,
+    queue: &mut Queue,
+    response: &Response,
+    sight: &Sight<'_>,
+    gizmo: &Gizmo,
+    handle: Handle,
+) {
     let Some(at) = response.interact_pointer_pos() else { return };
     let at = at - sight.rect.min;
     let at = DVec2::new(f64::from(at.x), f64::from(at.y));
     if response.drag_started() {
         let origin = response.ctx.input(|input| input.pointer.press_origin()).map(|pos| pos - sight.rect.min);
         let from = origin.map_or(at, |pos| DVec2::new(f64::from(pos.x), f64::from(pos.y)));
-        studio.view.grip = Some(Grip { handle, from, moved: Moved::default() });
+        view.state.grip = Some(Grip { handle, from, moved: Moved::default() });
     }
-    let Some(mut grip) = studio.view.grip.filter(|grip| grip.handle == handle) else { return };
+    let Some(mut grip) = view.state.grip.filter(|grip| grip.handle == handle) else { return };
     if let Some(moved) = gizmo.dragged(handle, sight.ray(grip.from), sight.ray(at)) {
         let round = |value: f64| (value / STEP).round() * STEP;
         grip.moved = Moved { shift: moved.shift.map(round), turn: round(moved.turn) };
     }
-    studio.view.grip = Some(grip);
+    view.state.grip = Some(grip);
     if response.drag_stopped() {
-        studio.view.grip = None;
-        place(studio, grip.moved, gizmo.foot.truncate());
+        view.state.grip = None;
+        place(known, queue, grip.moved, gizmo.foot.truncate());
     }
 }
 
 /// Arrow keys for the handle that has the focus: 1 mm or 1°, with Shift ten.
-fn nudge(studio: &mut Studio, ui: &Ui, response: &Response, gizmo: &Gizmo, handle: Handle) {
+fn nudge(known: Known<'_>, queue: &mut Queue, ui: &Ui, response: &Response, gizmo: &Gizmo, handle: Handle) {
     if !response.has_focus() {
         return;
     }
@@ -112,21 +120,21 @@ fn nudge(studio: &mut Studio, ui: &Ui, response: &Response, gizmo: &Gizmo, handl
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, arrows));
     let [right, up] = pressed(ui);
     if right + up != 0.0 {
-        place(studio, handle.by(right + up), gizmo.foot.truncate());
+        place(known, queue, handle.by(right + up), gizmo.foot.truncate());
     }
 }
 
 /// Arrow keys while nothing has the focus: along the axes of the plate that go that way in the view.
-fn arrows(studio: &mut Studio, ui: &Ui) {
+fn arrows(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &Ui) {
     if ui.ctx().egui_wants_keyboard_input() || Popup::is_any_open(ui.ctx()) {
         return;
     }
     let [right, up] = pressed(ui);
-    let seen = studio.solid.camera.right().truncate();
+    let seen = view.solid.camera.right().truncate();
     let along = if seen.x.abs() >= seen.y.abs() { DVec2::X * seen.x.signum() } else { DVec2::Y * seen.y.signum() };
     let shift = along * right + along.perp() * up;
     if shift != DVec2::ZERO {
-        place(studio, Moved { shift, turn: 0.0 }, DVec2::ZERO);
+        place(known, queue, Moved { shift, turn: 0.0 }, DVec2::ZERO);
     }
 }
 
@@ -138,9 +146,9 @@ fn pressed(ui: &Ui) -> [f64; 2] {
     pairs.map(|[more, less]| step * (times(more) - times(less)))
 }
 
-fn place(studio: &mut Studio, moved: Moved, foot: DVec2) {
-    let placement = studio.project().placement.moved(moved.shift, moved.turn, foot);
-    studio.request(Action::Place(placement));
+fn place(known: Known<'_>, queue: &mut Queue, moved: Moved, foot: DVec2) {
+    let placement = known.project().placement.moved(moved.shift, moved.turn, foot);
+    queue.push(Action::Place(placement));
 }
 
 /// The extent of the part on its plate, where it would end up.
@@ -179,12 +187,12 @@ fn draw(painter: &Painter, sight: &Sight<'_>, gizmo: &Gizmo, handle: Handle, col
 }
 
 /// How far the part has been dragged, or what the tool is for.
-pub(super) fn told(studio: &Studio) -> String {
-    match studio.view.grip {
-        Some(Grip { handle: Handle::Turn, moved, .. }) => format!("{} {:+.1}°", studio.t("turn-z"), moved.turn),
+pub(super) fn told(known: Known<'_>, view: &View<'_>) -> String {
+    match view.state.grip {
+        Some(Grip { handle: Handle::Turn, moved, .. }) => format!("{} {:+.1}°", known.t("turn-z"), moved.turn),
         Some(Grip { moved: Moved { shift, .. }, .. }) => {
-            format!("{} {:+.1} mm, {} {:+.1} mm", studio.t("move-x"), shift.x, studio.t("move-y"), shift.y)
+            format!("{} {:+.1} mm, {} {:+.1} mm", known.t("move-x"), shift.x, known.t("move-y"), shift.y)
         }
-        None => studio.t("place-hint").to_owned(),
+        None => known.t("place-hint").to_owned(),
     }
 }

@@ -2,54 +2,54 @@
 
 use crate::actions;
 use crate::actions::Action;
-use crate::studio::Studio;
+use crate::known::{Known, Queue, View};
 use crate::view::Mode;
 use beadwright::model::{Part, Placement, Units};
 use eframe::egui::{Button, CollapsingHeader, ComboBox, DragValue, Grid, Ui};
 
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let Some(source) = studio.project().source.clone() else { return };
+pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    let Some(source) = known.project().source.clone() else { return };
     ui.strong(source.label());
-    CollapsingHeader::new(studio.t("placement")).show(ui, |ui| {
-        let mut placement = studio.project().placement;
+    CollapsingHeader::new(known.t("placement")).show(ui, |ui| {
+        let mut placement = known.project().placement;
         Grid::new("placement").num_columns(2).show(ui, |ui| {
-            units(studio, ui, &mut placement);
+            units(known, ui, &mut placement);
             ui.end_row();
-            number(ui, studio.t("scale"), &mut placement.scale, 1e-6..=1e6, 0.01, "");
+            number(ui, known.t("scale"), &mut placement.scale, 1e-6..=1e6, 0.01, "");
             for (key, axis) in [("turn-x", 0), ("turn-y", 1), ("turn-z", 2)] {
-                number(ui, studio.t(key), &mut placement.turn[axis], -360.0..=360.0, 1.0, "°");
+                number(ui, known.t(key), &mut placement.turn[axis], -360.0..=360.0, 1.0, "°");
             }
             for (key, axis) in [("move-x", 0), ("move-y", 1)] {
-                number(ui, studio.t(key), &mut placement.shift[axis], -20_000.0..=20_000.0, 1.0, " mm");
+                number(ui, known.t(key), &mut placement.shift[axis], -20_000.0..=20_000.0, 1.0, " mm");
             }
         });
-        ui.checkbox(&mut placement.centre, studio.t("centre"));
+        ui.checkbox(&mut placement.centre, known.t("centre"));
         ui.horizontal(|ui| {
-            if ui.button(studio.t("lay-flat")).clicked() {
-                placement.turn = laid_flat(studio, &placement);
+            if ui.button(known.t("lay-flat")).clicked() {
+                placement.turn = laid_flat(known, &placement);
             }
-            let (by_face, solid) = (studio.t("lay-by-face"), studio.plans.own.scene.mesh().is_some());
-            if ui.add_enabled(solid, Button::selectable(studio.view.laying, by_face)).clicked() {
-                studio.view.laying = !studio.view.laying;
-                studio.view.switch(Mode::Solid);
+            let (by_face, solid) = (known.t("lay-by-face"), known.plans.own.scene.mesh().is_some());
+            if ui.add_enabled(solid, Button::selectable(view.state.laying, by_face)).clicked() {
+                view.state.laying = !view.state.laying;
+                view.state.switch(Mode::Solid);
             }
-            if ui.button(studio.t("reset")).clicked() {
+            if ui.button(known.t("reset")).clicked() {
                 placement = Placement { units: placement.units, ..Placement::default() };
             }
         });
-        if placement != studio.project().placement {
-            studio.request(Action::Place(placement));
+        if placement != known.project().placement {
+            queue.push(Action::Place(placement));
         }
     });
-    let (mut preform, hint) = (studio.project().preform, studio.t("preform-hint"));
-    if ui.checkbox(&mut preform, studio.t("preform")).on_hover_text(hint).changed() {
-        studio.request(Action::Preform(preform));
+    let (mut preform, hint) = (known.project().preform, known.t("preform-hint"));
+    if ui.checkbox(&mut preform, known.t("preform")).on_hover_text(hint).changed() {
+        queue.push(Action::Preform(preform));
     }
 }
 
 /// The turn that lays the part in view flat.
-fn laid_flat(studio: &Studio, placement: &Placement) -> glam::DVec3 {
-    match studio.plans.own.part.as_deref() {
+fn laid_flat(known: Known<'_>, placement: &Placement) -> glam::DVec3 {
+    match known.plans.own.part.as_deref() {
         Some(Part::Mesh(import)) => {
             placement.laid_flat(import.milled.as_ref().map_or(&import.mesh, |milled| &milled.mesh))
         }
@@ -57,12 +57,12 @@ fn laid_flat(studio: &Studio, placement: &Placement) -> glam::DVec3 {
     }
 }
 
-fn units(studio: &Studio, ui: &mut Ui, placement: &mut Placement) {
+fn units(known: Known<'_>, ui: &mut Ui, placement: &mut Placement) {
     let name = |units: Option<Units>| match units {
         Some(units) => Units::ALL.iter().find(|(_, u)| *u == units).map_or("mm", |(name, _)| *name),
-        None => studio.t("units-guess"),
+        None => known.t("units-guess"),
     };
-    let label = ui.label(studio.t("units"));
+    let label = ui.label(known.t("units"));
     let combo = ComboBox::from_id_salt("units").selected_text(name(placement.units)).show_ui(ui, |ui| {
         ui.selectable_value(&mut placement.units, None, name(None));
         for (word, units) in Units::ALL {

@@ -3,7 +3,7 @@
 use super::{process, words};
 use crate::actions::Action;
 use crate::jobs::Ask;
-use crate::studio::Studio;
+use crate::known::{Known, Queue, View};
 use beadwright::report::{bead_window, plot as page};
 use beadwright::robot::Reach;
 use eframe::egui::{Rangef, Response, Ui};
@@ -18,36 +18,36 @@ const SPACING: Rangef = Rangef { min: 25.0, max: 40.0 };
 /// Height of a plot, points.
 const HEIGHT: f32 = 140.0;
 
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    let (x, none) = (studio.t("axis-layer"), studio.t("no-values"));
+pub(super) fn show(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    let (x, none) = (known.t("axis-layer"), known.t("no-values"));
     let judged = |value: fn(&beadwright::deposit::Figures) -> f64| -> Vec<[f64; 2]> {
-        let figures = studio.plans.own.judgements.iter().enumerate();
+        let figures = known.plans.own.judgements.iter().enumerate();
         figures.map(|(i, judgement)| [i as f64 + 1.0, value(&judgement.figures)]).collect()
     };
-    let label = curve(ui, studio.t("plot-void"), x, none, judged(|f| f.void_percent()));
-    words::explained(studio, label, "void");
-    let label = curve(ui, studio.t("plot-overfill"), x, none, judged(|f| f.overfill_percent()));
-    words::explained(studio, label, "overfill");
+    let label = curve(ui, known.t("plot-void"), x, none, judged(|f| f.void_percent()));
+    words::explained(known, label, "void");
+    let label = curve(ui, known.t("plot-overfill"), x, none, judged(|f| f.overfill_percent()));
+    words::explained(known, label, "overfill");
     let planned = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
-        (0..studio.plans.own.layers.len()).map(|i| [i as f64 + 1.0, value(i)]).collect()
+        (0..known.plans.own.layers.len()).map(|i| [i as f64 + 1.0, value(i)]).collect()
     };
-    curve(ui, studio.worded("plot-starts"), x, none, planned(&|i| studio.plans.own.layers[i].passes.len() as f64));
-    let seconds = |i: usize| studio.plans.own.scene.layer(i).map_or(0.0, |beads| beads.seconds());
-    curve(ui, studio.t("plot-time"), x, none, planned(&seconds));
+    curve(ui, known.worded("plot-starts"), x, none, planned(&|i| known.plans.own.layers[i].passes.len() as f64));
+    let seconds = |i: usize| known.plans.own.scene.layer(i).map_or(0.0, |beads| beads.seconds());
+    curve(ui, known.t("plot-time"), x, none, planned(&seconds));
     ui.separator();
-    beads(studio, ui);
+    beads(known, queue, ui);
     ui.separator();
-    joints(studio, ui);
+    joints(known, view, queue, ui);
 }
 
 /// Width/height of a bead library over its inputs.
-fn beads(studio: &mut Studio, ui: &mut Ui) {
-    if ui.button(studio.t("open-beads")).clicked() {
-        studio.request(Action::Ask(Ask::OpenBeads));
+fn beads(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
+    if ui.button(known.t("open-beads")).clicked() {
+        queue.push(Action::Ask(Ask::OpenBeads));
     }
-    let Some(library) = &studio.jobs.beads else { return };
+    let Some(library) = &known.jobs.beads else { return };
     let found = bead_window::plot(library);
-    ui.label(studio.t("plot-lambda")).on_hover_text(&found.title);
+    ui.label(known.t("plot-lambda")).on_hover_text(&found.title);
     drawn(ui, "lambda", &found);
 }
 
@@ -82,25 +82,25 @@ fn curve(ui: &mut Ui, title: &'static str, x: &'static str, none: &'static str, 
     label
 }
 
-fn joints(studio: &mut Studio, ui: &mut Ui) {
-    ui.horizontal(|ui| process::cell(studio, ui));
-    let ready = studio.plans.own.summary.is_some() && studio.jobs.reach_job.is_none();
-    if ui.add_enabled(ready, eframe::egui::Button::new(studio.t("reach-run"))).clicked() {
-        studio.request(Action::Reach);
+fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    ui.horizontal(|ui| process::cell(known, view, queue, ui));
+    let ready = known.plans.own.summary.is_some() && known.jobs.reach_job.is_none();
+    if ui.add_enabled(ready, eframe::egui::Button::new(known.t("reach-run"))).clicked() {
+        queue.push(Action::Reach);
     }
-    if studio.jobs.reach_job.is_some() {
+    if known.jobs.reach_job.is_some() {
         ui.spinner();
     }
-    let Some(reach) = &studio.jobs.reach else { return };
+    let Some(reach) = &known.jobs.reach else { return };
     match reach.least_margin() {
-        Some(margin) => ui.label(format!("{}: {margin:.1}°", studio.t("reach-margin"))),
+        Some(margin) => ui.label(format!("{}: {margin:.1}°", known.t("reach-margin"))),
         None => ui.label("–"),
     };
     for finding in &reach.findings {
         ui.colored_label(ui.visuals().warn_fg_color, finding.sentence());
     }
-    ui.label(studio.t("plot-joints"));
-    let plot = Plot::new("joints").height(2.0 * HEIGHT).legend(Legend::default()).x_axis_label(studio.t("axis-time"));
+    ui.label(known.t("plot-joints"));
+    let plot = Plot::new("joints").height(2.0 * HEIGHT).legend(Legend::default()).x_axis_label(known.t("axis-time"));
     plot.allow_scroll(false).show(ui, |plot| {
         for joint in 0..6 {
             plot.line(Line::new(format!("J{}", joint + 1), joint_curve(reach, joint)));

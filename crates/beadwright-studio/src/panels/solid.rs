@@ -2,7 +2,7 @@
 
 use super::{bead, place, robot, scan, section, stock};
 use crate::actions::Action;
-use crate::studio::Studio;
+use crate::known::{Known, Queue, View};
 use crate::view3d::{Colour, Pick, Style, face, palette};
 use beadwright::model::Placement;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
@@ -19,118 +19,125 @@ const COLOURS: [(Colour, &str); 7] = [
     (Colour::Temperature, "colour-temperature"),
 ];
 
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    ui.horizontal_wrapped(|ui| bar(studio, ui));
+pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| bar(known, view, queue, ui));
     ui.horizontal_wrapped(|ui| {
-        colours(studio, ui);
-        legend(studio, ui);
+        colours(known, view, queue, ui);
+        legend(known, view, ui);
         ui.separator();
-        section::show(studio, ui);
+        section::show(known, view, ui);
         ui.separator();
-        place::switch(studio, ui);
+        place::switch(known, view, ui);
     });
-    bead::show(studio, ui);
-    robot::joints(studio, ui);
-    scan::show(studio, ui);
-    stock::show(studio, ui);
-    let (style, label) = (studio.style(), studio.t("view-3d-label"));
-    studio.solid.around = place::around(studio);
-    let rect = view(studio, ui, &style, label);
-    place::show(studio, ui, rect);
+    bead::show(known, view, ui);
+    robot::joints(known, view, queue, ui);
+    scan::show(known, view, queue, ui);
+    stock::show(known, view, ui);
+    let (style, label) = (known.style(view.state), known.t("view-3d-label"));
+    view.solid.around = place::around(known, view);
+    let rect = picture(known, view, queue, ui, &style, label);
+    place::show(known, view, queue, ui, rect);
 }
 
 /// The picture, with what a click chooses; where it is.
-pub(super) fn view(studio: &mut Studio, ui: &mut Ui, style: &Style, label: &str) -> Rect {
-    studio.solid.caption = caption(studio);
-    studio.solid.no_adapter = studio.t("no-adapter").to_owned();
-    studio.solid.camera.orthographic = studio.view.parallel;
-    let shown = studio.solid.show(ui, studio.window.render_state.as_ref(), &studio.plans.own.scene, style, label);
-    if studio.view.laying {
-        shown.sight.into_iter().for_each(|sight| lay(studio, sight));
+pub(super) fn picture(
+    known: Known<'_>,
+    view: &mut View<'_>,
+    queue: &mut Queue,
+    ui: &mut Ui,
+    style: &Style,
+    label: &str,
+) -> Rect {
+    view.solid.caption = caption(known, view);
+    view.solid.no_adapter = known.t("no-adapter").to_owned();
+    view.solid.camera.orthographic = view.state.parallel;
+    let shown = view.solid.show(ui, known.window.render_state.as_ref(), &known.plans.own.scene, style, label);
+    if view.state.laying {
+        shown.sight.into_iter().for_each(|sight| lay(known, view, queue, sight));
     } else if shown.clicked {
-        studio.view.chosen = shown.picked.and_then(|pick| chosen(studio, pick));
+        view.state.chosen = shown.picked.and_then(|pick| chosen(known, pick));
     }
     shown.response.rect
 }
 
 /// Lays the part onto the face that is seen there.
-fn lay(studio: &mut Studio, sight: (DVec3, DVec3)) {
-    let Some(normal) = studio.plans.own.scene.mesh().and_then(|mesh| face(mesh, sight)) else { return };
-    let placement = studio.project().placement;
-    studio.request(Action::Place(Placement { turn: placement.turned_onto(normal), ..placement }));
-    studio.view.laying = false;
-    studio.solid.fit();
+fn lay(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, sight: (DVec3, DVec3)) {
+    let Some(normal) = known.plans.own.scene.mesh().and_then(|mesh| face(mesh, sight)) else { return };
+    let placement = known.project().placement;
+    queue.push(Action::Place(Placement { turn: placement.turned_onto(normal), ..placement }));
+    view.state.laying = false;
+    view.solid.fit();
 }
 
 /// What is shown.
-pub(super) fn bar(studio: &mut Studio, ui: &mut Ui) {
+pub(super) fn bar(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     let texts = ["show-mesh", "show-beads", "show-travels", "show-starts", "all-marks", "show-plate", "parallel"];
-    let [mesh, beads, travels, starts, all_marks, plate, parallel] = texts.map(|key| studio.t(key));
-    ui.checkbox(&mut studio.view.mesh, mesh);
-    ui.checkbox(&mut studio.view.show.beads, beads);
-    ui.checkbox(&mut studio.view.show.travels, travels);
-    ui.checkbox(&mut studio.view.show.starts, starts);
-    ui.checkbox(&mut studio.view.all_marks, all_marks);
-    ui.checkbox(&mut studio.view.plate, plate);
-    robot::switch(studio, ui);
-    ui.checkbox(&mut studio.view.parallel, parallel);
+    let [mesh, beads, travels, starts, all_marks, plate, parallel] = texts.map(|key| known.t(key));
+    ui.checkbox(&mut view.state.mesh, mesh);
+    ui.checkbox(&mut view.state.show.beads, beads);
+    ui.checkbox(&mut view.state.show.travels, travels);
+    ui.checkbox(&mut view.state.show.starts, starts);
+    ui.checkbox(&mut view.state.all_marks, all_marks);
+    ui.checkbox(&mut view.state.plate, plate);
+    robot::switch(known, view, queue, ui);
+    ui.checkbox(&mut view.state.parallel, parallel);
 }
 
 /// What the colours show.
-pub(super) fn colours(studio: &mut Studio, ui: &mut Ui) {
-    let label = ui.label(studio.t("colour"));
+pub(super) fn colours(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    let label = ui.label(known.t("colour"));
     let text = |colour| COLOURS.iter().find(|(c, _)| *c == colour).map_or("colour-kind", |(_, key)| *key);
-    let selected = studio.t(text(studio.view.colour));
+    let selected = known.t(text(view.state.colour));
     let combo = ComboBox::from_id_salt("colour").selected_text(selected).show_ui(ui, |ui| {
         for (colour, key) in COLOURS {
-            let text = studio.t(key);
-            ui.selectable_value(&mut studio.view.colour, colour, text);
+            let text = known.t(key);
+            ui.selectable_value(&mut view.state.colour, colour, text);
         }
     });
     combo.response.labelled_by(label.id);
-    warm(studio, ui);
+    warm(known, view, queue, ui);
 }
 
 /// Has temperatures computed when they are to be shown and the plan has none.
-fn warm(studio: &mut Studio, ui: &mut Ui) {
-    if studio.jobs.heat_job.is_some() {
+fn warm(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    if known.jobs.heat_job.is_some() {
         ui.spinner();
-        ui.weak(studio.t("stage-heat"));
+        ui.weak(known.t("stage-heat"));
         return;
     }
-    let known = || studio.plans.own.scene.value_range(Colour::Temperature).is_some();
-    if studio.view.colour == Colour::Temperature && studio.plans.own.summary.is_some() && !known() {
-        studio.request(Action::Heat);
+    let has = || known.plans.own.scene.value_range(Colour::Temperature).is_some();
+    if view.state.colour == Colour::Temperature && known.plans.own.summary.is_some() && !has() {
+        queue.push(Action::Heat);
     }
 }
 
 /// What the colours mean: a patch for each kind of pass in the plan, or a scale with its ends.
-fn legend(studio: &Studio, ui: &mut Ui) {
-    let dark = !studio.window.settings.light;
-    if studio.view.colour == Colour::Kind {
-        let passes = || studio.plans.own.layers.iter().flat_map(|layer| &layer.passes);
+fn legend(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
+    let dark = !known.window.settings.light;
+    if view.state.colour == Colour::Kind {
+        let passes = || known.plans.own.layers.iter().flat_map(|layer| &layer.passes);
         let used = |kind| passes().any(|pass| palette::kind(pass.kind) == palette::kind(kind));
         for kind in palette::KINDS.into_iter().filter(|kind| used(*kind)) {
             let (place, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
             ui.painter().rect_filled(place, 2.0, colour(palette::kind(kind)));
-            ui.label(studio.language().word("kind", kind.name()));
+            ui.label(known.language().word("kind", kind.name()));
         }
         return;
     }
-    let Some((low, high)) = studio.plans.own.scene.value_range(studio.view.colour) else {
-        ui.weak(studio.t("no-values"));
+    let Some((low, high)) = known.plans.own.scene.value_range(view.state.colour) else {
+        ui.weak(known.t("no-values"));
         return;
     };
-    let unit = match studio.view.colour {
+    let unit = match view.state.colour {
         Colour::Speed => " mm/s",
         Colour::Width => " mm",
         Colour::Time => " s",
         Colour::Temperature => " °C",
-        Colour::HeightError => studio.t("unit-bead-heights"),
+        Colour::HeightError => known.t("unit-bead-heights"),
         _ => "",
     };
     ui.label(format!("{low:.1}{unit}"));
-    scale(ui, |part| palette::at(studio.view.colour, part, dark));
+    scale(ui, |part| palette::at(view.state.colour, part, dark));
     ui.label(format!("{high:.1}{unit}"));
 }
 
@@ -154,16 +161,16 @@ fn colour([r, g, b]: [u8; 3]) -> Color32 {
 }
 
 /// The size of the plate, and what the grid on it shows.
-fn caption(studio: &Studio) -> String {
-    let plate = studio.plate().filter(|_| studio.view.plate).map(|plate| {
+fn caption(known: Known<'_>, view: &View<'_>) -> String {
+    let plate = known.plate().filter(|_| view.state.plate).map(|plate| {
         let size = plate.high - plate.low;
-        format!("{} {:.0} × {:.0} × {:.0} mm, ", studio.t("show-plate"), size.x, size.y, plate.thickness)
+        format!("{} {:.0} × {:.0} × {:.0} mm, ", known.t("show-plate"), size.x, size.y, plate.thickness)
     });
-    format!("{}{}", plate.unwrap_or_default(), studio.t("grid"))
+    format!("{}{}", plate.unwrap_or_default(), known.t("grid"))
 }
 
 /// The picked bead, its segment counted within its pass instead of within its layer.
-fn chosen(studio: &Studio, pick: Pick) -> Option<(usize, usize, usize)> {
-    let span = studio.plans.own.scene.layer(pick.layer)?.passes().get(pick.pass)?;
+fn chosen(known: Known<'_>, pick: Pick) -> Option<(usize, usize, usize)> {
+    let span = known.plans.own.scene.layer(pick.layer)?.passes().get(pick.pass)?;
     Some((pick.layer, pick.pass, pick.segment - span.segments.start))
 }

@@ -2,54 +2,44 @@
 
 use super::process;
 use crate::actions::Action;
-use crate::studio::Studio;
-use crate::thumbnail::thumbnail;
+use crate::known::{Known, Queue, View};
+use crate::thumbnail::SIZE;
 use beadwright::example::{self, Example};
 use eframe::egui::{
-    Align2, Button, Color32, FontId, Frame, Rect, RichText, Role, ScrollArea, Sense, Stroke, TextureId, TextureOptions,
-    Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Button, Color32, FontId, Frame, Rect, RichText, Role, ScrollArea, Sense, Stroke, TextureId, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
 };
-
-/// Size of the picture of an example, points.
-const PICTURE: [usize; 2] = [148, 104];
 
 /// Most recent files listed.
 const RECENT: usize = 6;
 
-pub(super) fn show(studio: &mut Studio, ui: &mut Ui) {
-    draw_next(studio, ui);
+pub(super) fn show(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    // One in a frame, so that none takes long.
+    if known.window.pictures.len() < example::ALL.len() {
+        queue.push(Action::DrawExample);
+    }
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.spacing_mut().item_spacing = vec2(10.0, 10.0);
-        drop_zone(studio, ui);
+        drop_zone(known, queue, ui);
         ui.add_space(6.0);
-        ui.strong(studio.t("start-process"));
+        ui.strong(known.t("start-process"));
         ui.horizontal_wrapped(|ui| {
-            process::profile(studio, ui);
+            process::profile(known, queue, ui);
             ui.separator();
-            process::cell(studio, ui);
+            process::cell(known, view, queue, ui);
         });
-        if let Some(parsed) = studio.parsed() {
+        if let Some(parsed) = known.parsed() {
             ui.weak(&parsed.profile.description);
         }
         ui.add_space(6.0);
-        recent(studio, ui);
+        recent(known, queue, ui);
         ui.add_space(6.0);
-        ui.strong(studio.t("start-examples"));
-        ui.horizontal_wrapped(|ui| examples(studio, ui));
+        ui.strong(known.t("start-examples"));
+        ui.horizontal_wrapped(|ui| examples(known, queue, ui));
     });
 }
 
-/// Draws the picture of one example, so that no frame takes long.
-fn draw_next(studio: &mut Studio, ui: &Ui) {
-    let drawn = &mut studio.window.pictures;
-    let Some(example) = example::ALL.get(drawn.len()) else { return };
-    let scale = ui.ctx().pixels_per_point().ceil() as usize;
-    let picture = thumbnail(&example.mesh(), PICTURE.map(|length| length * scale));
-    drawn.push(ui.ctx().load_texture(example.name, picture, TextureOptions::LINEAR));
-    ui.ctx().request_repaint();
-}
-
-fn drop_zone(studio: &mut Studio, ui: &mut Ui) {
+fn drop_zone(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
     let visuals = ui.visuals().clone();
     let hovers = ui.input(|input| !input.raw.hovered_files.is_empty());
     let (fill, ink) = if hovers {
@@ -59,27 +49,27 @@ fn drop_zone(studio: &mut Studio, ui: &mut Ui) {
     };
     Frame::new().fill(fill).stroke(Stroke::new(1.5, ink)).corner_radius(8.0).inner_margin(26.0).show(ui, |ui| {
         ui.vertical_centered(|ui| {
-            ui.heading(RichText::new(studio.t("start-drop")).strong());
-            ui.weak(studio.t("start-formats"));
-            if ui.add(Button::new(studio.t("open")).min_size(vec2(120.0, 30.0))).clicked() {
-                studio.request(Action::Open);
+            ui.heading(RichText::new(known.t("start-drop")).strong());
+            ui.weak(known.t("start-formats"));
+            if ui.add(Button::new(known.t("open")).min_size(vec2(120.0, 30.0))).clicked() {
+                queue.push(Action::Open);
             }
         });
     });
 }
 
-fn examples(studio: &mut Studio, ui: &mut Ui) {
+fn examples(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
     for (i, example) in example::ALL.iter().enumerate() {
-        let picture = studio.window.pictures.get(i).map(|texture| texture.id());
+        let picture = known.window.pictures.get(i).map(|texture| texture.id());
         if tile(ui, example, picture) {
-            studio.request(Action::OpenExample(example.name));
+            queue.push(Action::OpenExample(example.name));
         }
     }
 }
 
 /// An example with its picture, name and size; whether it was clicked.
 fn tile(ui: &mut Ui, example: &Example, picture: Option<TextureId>) -> bool {
-    let size = Vec2::from(PICTURE.map(|length| length as f32));
+    let size = Vec2::from(SIZE.map(|length| length as f32));
     let (rect, response) = ui.allocate_exact_size(size + vec2(8.0, 44.0), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, example.name));
     let look = ui.style().interact(&response);
@@ -99,17 +89,17 @@ fn tile(ui: &mut Ui, example: &Example, picture: Option<TextureId>) -> bool {
     response.on_hover_text(example.about).clicked()
 }
 
-fn recent(studio: &mut Studio, ui: &mut Ui) {
-    if studio.window.settings.recent.is_empty() {
+fn recent(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
+    if known.window.settings.recent.is_empty() {
         return;
     }
-    ui.strong(studio.t("start-recent"));
-    for path in studio.window.settings.recent.iter().take(RECENT).cloned().collect::<Vec<_>>() {
+    ui.strong(known.t("start-recent"));
+    for path in known.window.settings.recent.iter().take(RECENT).cloned().collect::<Vec<_>>() {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let folder = path.parent().map_or_else(String::new, |folder| folder.display().to_string());
         ui.horizontal(|ui| {
             if ui.link(name).clicked() {
-                studio.request(Action::OpenFile(path));
+                queue.push(Action::OpenFile(path));
             }
             ui.weak(folder);
         });

@@ -1,30 +1,30 @@
 //! Totals of the plan, and the values of the chosen bead.
 
 use super::words;
+use crate::known::{Known, View};
 use crate::state::PlanState;
-use crate::studio::Studio;
 use beadwright::deposit::Figures;
 use beadwright::metrics::Metrics;
 use beadwright::report::rows;
 use eframe::egui::{Grid, Ui};
 
-pub(super) fn show(studio: &Studio, ui: &mut Ui) {
-    if let Some(part) = &studio.plans.own.part {
+pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
+    if let Some(part) = &known.plans.own.part {
         let (low, high) = part.bounds();
         let size = high - low;
-        ui.label(format!("{}: {:.1} × {:.1} × {:.1} mm", studio.t("size"), size.x, size.y, size.z));
+        ui.label(format!("{}: {:.1} × {:.1} × {:.1} mm", known.t("size"), size.x, size.y, size.z));
         ui.separator();
     }
-    let rows = rows_of(&studio.plans.own);
+    let rows = rows_of(&known.plans.own);
     Grid::new("totals").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         for (name, value) in &rows {
-            named(studio, ui, name);
+            named(known, ui, name);
             ui.label(value);
             ui.end_row();
         }
     });
     ui.separator();
-    chosen(studio, ui);
+    chosen(known, view, ui);
 }
 
 /// The rows known so far for a plan.
@@ -42,25 +42,25 @@ pub(super) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
 }
 
 /// A row's name, with what it means as a hint.
-pub(super) fn named(studio: &Studio, ui: &mut Ui, name: &'static str) {
-    words::explained(studio, ui.label(name_of(studio, name)), name);
+pub(super) fn named(known: Known<'_>, ui: &mut Ui, name: &'static str) {
+    words::explained(known, ui.label(name_of(known, name)), name);
 }
 
 /// A row's name in the language of the window.
-fn name_of(studio: &Studio, name: &'static str) -> &'static str {
+fn name_of(known: Known<'_>, name: &'static str) -> &'static str {
     let key = format!("total {name}");
-    let printed = studio.prints().then(|| studio.language().find(&format!("fdm {key}"))).flatten();
-    printed.or_else(|| studio.language().find(&key)).unwrap_or(name)
+    let printed = known.prints().then(|| known.language().find(&format!("fdm {key}"))).flatten();
+    printed.or_else(|| known.language().find(&key)).unwrap_or(name)
 }
 
-fn chosen(studio: &Studio, ui: &mut Ui) {
-    ui.strong(studio.t("chosen"));
-    let Some((layer, pass, piece)) = studio.view.chosen else {
-        ui.weak(studio.t("nothing-chosen"));
+fn chosen(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
+    ui.strong(known.t("chosen"));
+    let Some((layer, pass, piece)) = view.state.chosen else {
+        ui.weak(known.t("nothing-chosen"));
         return;
     };
-    let found = studio.plans.own.layer(layer).and_then(|layer| layer.passes.get(pass));
-    let (Some(found), Some(profile)) = (found, &studio.plans.own.profile) else { return };
+    let found = known.plans.own.layer(layer).and_then(|layer| layer.passes.get(pass));
+    let (Some(found), Some(profile)) = (found, &known.plans.own.profile) else { return };
     let Some(segment) = found.segments().nth(piece) else { return };
     let process = &profile.process.at_layer(layer);
     let metal: f64 = found.segments().map(|s| s.length() / s.pace).sum();
@@ -69,7 +69,7 @@ fn chosen(studio: &Studio, ui: &mut Ui) {
     let values = [
         ("layer", format!("{}", layer + 1)),
         ("pass", format!("{}", pass + 1)),
-        ("kind", studio.language().word("kind", found.kind.name())),
+        ("kind", known.language().word("kind", found.kind.name())),
         ("length", format!("{:.2} mm", found.length())),
         ("speed", format!("{:.2} mm/s", process.speed_at(segment.pace))),
         ("width", format!("{:.2} mm", segment.width)),
@@ -79,7 +79,7 @@ fn chosen(studio: &Studio, ui: &mut Ui) {
     Grid::new("chosen").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         let heat = heat.map(|heat| ("heat-input", format!("{heat:.0} J/mm")));
         for (key, value) in values.into_iter().chain(heat) {
-            ui.label(studio.worded(key));
+            ui.label(known.worded(key));
             ui.label(value);
             ui.end_row();
         }

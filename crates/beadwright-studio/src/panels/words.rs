@@ -1,6 +1,6 @@
 //! What the words of the figures mean: a hint on each, with the page of the book that says more.
 
-use crate::studio::Studio;
+use crate::known::Known;
 use eframe::egui::Response;
 
 /// Words that have a meaning of their own here.
@@ -10,12 +10,12 @@ const WORDS: [&str; 4] = ["void", "low", "overfill", "outside"];
 const PAGE: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs/book/checks.md");
 
 /// Explains what an English text names: the row of that name, or each of its words.
-pub(super) fn explained(studio: &Studio, response: Response, text: &str) -> Response {
-    let hints = hints(studio, text);
+pub(super) fn explained(known: Known<'_>, response: Response, text: &str) -> Response {
+    let hints = hints(known, text);
     if hints.is_empty() {
         return response;
     }
-    let more = studio.t("more-in-book");
+    let more = known.t("more-in-book");
     response.on_hover_ui(|ui| {
         ui.set_max_width(360.0);
         hints.iter().for_each(|hint| drop(ui.label(*hint)));
@@ -23,8 +23,8 @@ pub(super) fn explained(studio: &Studio, response: Response, text: &str) -> Resp
     })
 }
 
-fn hints(studio: &Studio, text: &str) -> Vec<&'static str> {
-    let hint = |word: &str| studio.language().find(&format!("hint {word}"));
+fn hints(known: Known<'_>, text: &str) -> Vec<&'static str> {
+    let hint = |word: &str| known.language().find(&format!("hint {word}"));
     if let Some(whole) = hint(text) {
         return vec![whole];
     }

@@ -1,0 +1,218 @@
+//! What is known: window, project, plans, background work. Panels can read it, change the view, and put all else into a queue.
+
+use crate::actions::Action;
+use crate::compared::Compared;
+use crate::export::Export;
+use crate::form::Parsed;
+use crate::heat::Temperatures;
+use crate::history::History;
+use crate::jobs::{Answer, Ask, Job};
+use crate::planner::Planner;
+use crate::project::Project;
+use crate::settings::{Settings, Store};
+use crate::state::PlanState;
+use crate::steps::Looked;
+use crate::text::Language;
+use crate::view::{Mode, ViewState};
+use crate::view2d::View2d;
+use crate::view3d::{Pick, Plate, Style, View3d};
+use beadwright::bead::library::BeadLibrary;
+use beadwright::fill::StrategyName;
+use beadwright::robot::{Cell, Reach};
+use eframe::egui::{self, Context};
+use eframe::egui_wgpu::RenderState;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+/// A second plan of the same part, with another strategy.
+pub(crate) struct Other {
+    /// The strategy.
+    pub strategy: StrategyName,
+    /// Its planner.
+    pub planner: Planner,
+    /// Its plan.
+    pub plan: PlanState,
+    /// Its steps in the layer in view.
+    pub looked: Looked,
+}
+
+/// The window and what is remembered.
+pub(crate) struct Window {
+    pub(crate) ctx: Context,
+    pub(crate) render_state: Option<RenderState>,
+    pub(crate) store: Store,
+    pub(crate) settings: Settings,
+    /// Pictures of the examples, in their order, as far as they are drawn.
+    pub(crate) pictures: Vec<egui::TextureHandle>,
+    /// Sentences on what went wrong or was done, newest last.
+    pub(crate) messages: Vec<Message>,
+    /// Whether there is a font with Chinese characters.
+    pub(crate) chinese: bool,
+    /// Whether the user wants to close the window despite unsaved changes and is being asked about them.
+    pub(crate) closing: bool,
+}
+
+/// The open project.
+pub(crate) struct Open {
+    pub(crate) project: History<Project>,
+    /// Its file.
+    pub(crate) file: Option<PathBuf>,
+    /// The project as last opened or saved.
+    pub(crate) saved: Project,
+    /// The project as last autosaved.
+    pub(crate) kept: Project,
+    /// Number of undo steps when it was opened.
+    pub(crate) opened: usize,
+    /// The project of a run that crashed.
+    pub(crate) lost: Option<Project>,
+    /// The profile as the form needs it, parsed from the text last read.
+    pub(crate) parsed: Option<Rc<Parsed>>,
+    /// A key whose value was refused, and why.
+    pub(crate) refused: Option<(String, String)>,
+}
+
+/// The plan, and a second one to compare it with.
+pub(crate) struct Plans {
+    pub(crate) planner: Planner,
+    pub(crate) own: PlanState,
+    pub(crate) other: Option<Other>,
+}
+
+/// Other background work, and its results.
+#[derive(Default)]
+pub(crate) struct Jobs {
+    pub(crate) dialog: Option<Job<Answer>>,
+    /// What a path is typed for, where there is no dialog.
+    pub(crate) typed: Option<Ask>,
+    /// What to write into the folder that is being asked for.
+    pub(crate) exporting: Export,
+    /// The steps of the strategy in the layer in view.
+    pub(crate) looked: Looked,
+    pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
+    pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
+    pub(crate) reach: Option<Reach>,
+    /// The cell that this is about.
+    pub(crate) cell: Option<Cell>,
+    /// A scan to be opened.
+    pub(crate) scan_wanted: Option<PathBuf>,
+    pub(crate) scan_job: Option<Job<Result<Compared, String>>>,
+    /// A scan of the built part.
+    pub(crate) scan: Option<Compared>,
+    /// Measured beads to look at.
+    pub(crate) beads: Option<BeadLibrary>,
+}
+
+impl Jobs {
+    /// Whether nothing is being computed.
+    pub(crate) fn is_idle(&self) -> bool {
+        let computes = self.reach_job.is_some()
+            || self.heat_job.is_some()
+            || self.scan_job.is_some()
+            || self.scan_wanted.is_some();
+        !computes && !self.looked.is_busy()
+    }
+}
+
+/// A message in the window.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// Whether something went wrong.
+    pub error: bool,
+    /// The sentence.
+    pub text: String,
+}
+
+/// What is to be done once the panels are drawn.
+pub(crate) type Queue = Vec<Action>;
+
+/// Window, project, plans and background work.
+#[derive(Clone, Copy)]
+pub(crate) struct Known<'a> {
+    pub(crate) window: &'a Window,
+    pub(crate) open: &'a Open,
+    pub(crate) plans: &'a Plans,
+    pub(crate) jobs: &'a Jobs,
+}
+
+/// What is shown, and from where it is seen.
+pub(crate) struct View<'a> {
+    pub(crate) state: &'a mut ViewState,
+    pub(crate) solid: &'a mut View3d,
+    pub(crate) flat: &'a mut View2d,
+    /// The views of the plan with another strategy.
+    pub(crate) their_solid: &'a mut View3d,
+    pub(crate) their_flat: &'a mut View2d,
+}
+
+impl<'a> Known<'a> {
+    pub(crate) fn language(self) -> Language {
+        if self.window.chinese { self.window.settings.language } else { Language::English }
+    }
+
+    /// The text of a key in the language of the window.
+    pub(crate) fn t(self, key: &'static str) -> &'static str {
+        self.language().text(key)
+    }
+
+    /// Whether the plan is one for a printer, which has filament and no arc.
+    pub(crate) fn prints(self) -> bool {
+        self.plans.own.profile.as_ref().is_some_and(|profile| profile.prints())
+    }
+
+    /// The text of a key in the words of the process: those of welding, or of printing where they differ.
+    pub(crate) fn worded(self, key: &'static str) -> &'static str {
+        let printed = self.prints().then(|| self.language().find(&format!("fdm {key}"))).flatten();
+        printed.unwrap_or_else(|| self.t(key))
+    }
+
+    /// The project.
+    pub(crate) fn project(self) -> &'a Project {
+        self.open.project.now()
+    }
+
+    /// The profile as its form needs it.
+    pub(crate) fn parsed(self) -> Option<Rc<Parsed>> {
+        self.open.parsed.clone()
+    }
+
+    /// The plate on which the part is built, if the profile has one.
+    pub(crate) fn plate(self) -> Option<Plate> {
+        let plate = self.plans.own.profile.as_ref()?.substrate.as_ref()?;
+        let (low, high) = self.plans.own.part.as_ref()?.bounds();
+        let (low, high) = (low.truncate() - plate.margin, high.truncate() + plate.margin);
+        Some(Plate { low, high, thickness: plate.thickness })
+    }
+
+    /// A bead, given by its layer, its pass and its piece of the pass.
+    pub(crate) fn pick(self, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
+        let span = self.plans.own.scene.layer(layer)?.passes().get(pass)?;
+        Some(Pick { layer, pass, segment: span.segments.start + piece })
+    }
+
+    /// What the 3-D view shows.
+    pub(crate) fn style(self, view: &ViewState) -> Style {
+        let inner = view.scan && self.scan().is_some() || view.stock && self.has_stock();
+        let scan = inner && view.mode == Mode::Solid && !view.laying;
+        let arm = self.arm(view);
+        let at_arm = self.torch_place(view).filter(|_| arm.is_some()).map(|place| place.at);
+        let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
+        Style {
+            colour: view.colour,
+            mesh: view.mesh || view.laying,
+            scan,
+            travels: view.show.travels && !scan,
+            starts: view.show.starts && !scan,
+            marks_from: if view.all_marks { 0 } else { view.last },
+            // Beads would be in front of the faces to be clicked, and in front of the scan.
+            beads: view.show.beads && !view.laying && !scan,
+            layers: view.first..=view.last,
+            segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
+            section: view.section,
+            plate: self.plate().filter(|_| view.plate),
+            torch: view.torch.or(at_arm),
+            arm: arm.map(|arm| arm.links).unwrap_or_default(),
+            highlight: view.chosen.and_then(|chosen| self.pick(chosen)),
+            dark: !self.window.settings.light,
+        }
+    }
+}
