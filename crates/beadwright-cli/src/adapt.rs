@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
 /// How far corrections may go.
 #[derive(clap::Args)]
 pub(crate) struct Limits {
-    /// Least and greatest metal per length, as multiples of the planned one.
+    /// Least and greatest metal per length, as multiples of what was planned.
     #[arg(long, value_name = "LEAST..MOST", default_value = "0.7..1.3", value_parser = parse_window)]
     window: (f64, f64),
     /// Distance between the points at which metal and height change, mm; a bead width if left out.

@@ -51,7 +51,7 @@ pub(crate) struct Fit {
     /// Library to write.
     #[arg(short, long, default_value = "bead-library.toml", value_name = "FILE")]
     output: PathBuf,
-    /// Picture to write of width/height over the first input, with a curve for each value of the second.
+    /// Write a picture of width/height over the first input, with a curve for each value of the second.
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
     /// Print machine-readable JSON.
@@ -79,7 +79,7 @@ pub(crate) struct Walls {
 
 #[derive(clap::Args)]
 pub(crate) struct CheckTable {
-    /// CSV with the columns current_a, speed_mm_s, width_mm, height_mm and, for walls of one bead a layer, layers.
+    /// CSV with the columns current_a, speed_mm_s, width_mm, height_mm and, for walls one bead thick, layers.
     data: PathBuf,
     /// Print machine-readable JSON.
     #[arg(long)]

@@ -21,12 +21,12 @@ pub(crate) struct Arguments {
     wanted: profile::Wanted,
     #[command(flatten)]
     noise: Noise,
-    /// Use of the scan after each layer; may be given several times; all three, side by side, if left out.
+    /// How the scan after each layer is used; may be given several times; if left out, all three side by side.
     #[arg(long, value_enum, value_name = "KIND")]
     feedback: Vec<Kind>,
     #[command(flatten)]
     limits: adapt::Limits,
-    /// Let walls grow less on warm metal, as `bead.by_heat` says, although the plan was made without it.
+    /// Let walls grow less on warm metal, as `bead.by_heat` says, even though the plan was made without it.
     #[arg(long)]
     heat: bool,
     /// Seed of the random numbers.
@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// What goes wrong, as parts of the metal: 0.1 is ±10 %.
+/// Errors, as fractions of the metal: 0.1 is ±10 %.
 #[derive(clap::Args)]
 struct Noise {
     /// Deviation of the metal from pass to pass.
@@ -58,7 +58,7 @@ struct Noise {
     /// Growth of the metal from the first to the last layer.
     #[arg(long, default_value_t = 0.03, allow_hyphen_values = true, value_parser = parse_part)]
     drift: f64,
-    /// Pass whose arc does not burn, counted from 1 over the build.
+    /// Pass whose arc fails to burn, counted from 1 through the whole build.
     #[arg(long, value_name = "PASS", value_parser = clap::value_parser!(u32).range(1..))]
     lost_pass: Option<u32>,
     /// Deviation of a point of a scan, mm.
@@ -180,8 +180,8 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
 fn even(layers: &[Layer], profile: &Profile) -> anyhow::Result<Vec<Layer>> {
     if let Some(layer) = layers.iter().find(|layer| layer.half.is_some()) {
         anyhow::bail!(
-            "layer {}: layers of which the outer side of a bend takes two are not built here. Bend the guide less, or raise \
-             layers.max_height.",
+            "layer {}: the outer side of a bend takes two layers where the inner side takes one, which this command cannot \
+             build. Bend the guide less, or raise layers.max_height.",
             layer.index + 1
         );
     }

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// plan.json, or a program in KRL, RAPID, FANUC TP, INFORM, URScript or G-code (if it has several files, the main one),
-    /// which is read as a welding programmer would read it; without it, the checks are listed.
+    /// which is read as a welding programmer would read it; without a file, the checks are listed.
     plan: Option<PathBuf>,
     #[command(flatten)]
     wanted: profile::Wanted,

@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     /// Strategy to compare; may be given several times; all strategies if left out.
     #[arg(long, short, value_name = "NAME")]
     strategy: Vec<StrategyName>,
-    /// Program for the same part, to judge alongside them; may be given several times.
+    /// Program for the same part, to be judged alongside the strategies; may be given several times.
     #[arg(long, value_name = "FILE")]
     program: Vec<PathBuf>,
     #[command(flatten)]

@@ -48,8 +48,8 @@ pub(crate) fn solid(path: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
             path.display()
         )
     })?;
-    let told = String::from_utf8_lossy(&done.stderr);
-    if told.contains("No module named 'OCP'") {
+    let said = String::from_utf8_lossy(&done.stderr);
+    if said.contains("No module named 'OCP'") {
         anyhow::bail!("{}: this is {kind}, which needs a converter. {REMEDY}", path.display());
     }
     let written = std::fs::read(&stl);
@@ -68,7 +68,7 @@ pub(crate) fn solid(path: &Path, bytes: Vec<u8>) -> anyhow::Result<Vec<u8>> {
         _ => anyhow::bail!(
             "{}: this is {kind}, and the converter {program} did not turn it into STL: {}. {REMEDY}",
             path.display(),
-            told.lines().last().unwrap_or("it says nothing").trim()
+            said.lines().last().unwrap_or("it says nothing").trim()
         ),
     }
 }

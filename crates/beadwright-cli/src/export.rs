@@ -21,10 +21,10 @@ pub(crate) struct Arguments {
     /// layers: NAME-001.dxf and so on); - for standard output, with --format.
     #[arg(long, short, value_name = "FILE")]
     output: PathBuf,
-    /// Format of standard output, given as the extension of such files, for example csv.
-    #[arg(long, value_name = "ENDING")]
+    /// Format for standard output, named by its extension, for example csv.
+    #[arg(long, value_name = "EXTENSION")]
     format: Option<String>,
-    /// Draw only this layer, counted from 1, into the file itself; for .dxf, .svg and .png.
+    /// Draw only this layer, counted from 1, and keep the file's name as it is; for .dxf, .svg and .png.
     #[arg(long, value_name = "LAYER")]
     layer: Option<usize>,
     /// Also compute how warm the metal ahead of the torch is, as a column of tables and of .vtp.
@@ -35,7 +35,10 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let source = program::Source::open(&arguments.plan)?;
     let plan = source.plan().with_context(|| {
-        format!("{}: plans are exported; give the plan.json of the program", arguments.plan.display())
+        format!(
+            "{}: only plans can be exported; give the plan.json that belongs to the program",
+            arguments.plan.display()
+        )
     })?;
     let standard = file::is_standard(&arguments.output);
     let ending = arguments.output.extension().map(|end| end.to_string_lossy().into_owned());
@@ -59,7 +62,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let known: Vec<String> = known.map(|(extension, purpose)| format!(".{extension} ({purpose})")).collect();
         format!("{}: the extension gives the format, and it may be {}", arguments.output.display(), known.join(" or "))
     })?;
-    anyhow::ensure!(arguments.layer.is_none(), "--layer belongs to drawings of layers (.dxf, .svg, .png)");
+    anyhow::ensure!(arguments.layer.is_none(), "--layer is only for drawings of layers (.dxf, .svg, .png)");
     let profile = source.profile(&arguments.wanted)?;
     let heat = arguments.temperatures.then(|| heat_of(plan, &profile)).transpose()?.flatten();
     let beads = Beads { header: &plan.header, layers: &plan.layers, profile: &profile, heat: heat.as_ref() };

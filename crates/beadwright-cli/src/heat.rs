@@ -48,7 +48,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let (limit, ambient) = (limits.max_temperature, heat.ambient);
         anyhow::ensure!(
             limit >= ambient + 10.0,
-            "--limit {limit}: the surroundings are at {ambient} °C (heat.ambient)"
+            "--limit {limit}: the limit must lie 10 °C or more above the surroundings, which are at {ambient} °C (heat.ambient)"
         );
     }
     let over = loaded.over.as_ref().map(|(bounds, _)| *bounds);

@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let bytes = convert::solid(&arguments.file, bytes.to_vec())?;
     let import = import_damaged(&bytes, &task).with_context(|| format!("{}", arguments.file.display()))?;
     bar.finish_and_clear();
-    let (import, told) = match arguments.fill_holes {
+    let (import, remarks) = match arguments.fill_holes {
         Some(widest) => {
             let (import, closed) = holes::close(import, widest);
             (import, closed.sentences())
@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if repair.is_clean() {
         writeln!(out, "  The mesh is closed and clean.")?;
     }
-    for line in told.into_iter().chain(repair.sentences()) {
+    for line in remarks.into_iter().chain(repair.sentences()) {
         writeln!(out, "  {line}")?;
     }
     if let Some(path) = &arguments.output {

@@ -67,16 +67,16 @@ pub(crate) fn exceeded(error: &anyhow::Error) -> Option<String> {
     let refused = error.chain().any(|cause| kind(cause) == Some(std::io::ErrorKind::OutOfMemory));
     #[cfg(unix)]
     if let Some(limit) = space::limit().filter(|_| refused) {
-        return Some(told(limit, space::ULIMIT));
+        return Some(too_much(limit, space::ULIMIT));
     }
     (refused || EXCEEDED.load(Ordering::Relaxed)).then(sentence)
 }
 
 fn sentence() -> String {
-    told(limit(), "--max-memory GB")
+    too_much(limit(), "--max-memory GB")
 }
 
-fn told(limit: u64, remedy: &str) -> String {
+fn too_much(limit: u64, remedy: &str) -> String {
     let digits = if limit < 100_000_000 { 2 } else { 1 };
     format!(
         "more than {:.digits$} GB of memory would be needed, and nothing was written. Use a coarser model or --grid, or allow \
@@ -101,7 +101,7 @@ mod space {
 
     pub(super) fn guard() {
         let Some(limit) = limit() else { return };
-        let line = format!("error: {}\n", super::told(limit, ULIMIT));
+        let line = format!("error: {}\n", super::too_much(limit, ULIMIT));
         let say = move || {
             _ = rustix::io::write(rustix::stdio::stderr(), line.as_bytes());
             low_level::exit(1);

@@ -33,11 +33,11 @@ pub(crate) struct Placing {
     /// Turn the part about x, then y, then z, in degrees, such as --turn 90,0,0.
     #[arg(long, value_parser = parse_turn, value_name = "X,Y,Z", allow_hyphen_values = true, default_value = "0,0,0")]
     turn: DVec3,
-    /// Turn the part so that it stands on its largest suitable flat face.
+    /// Lay the part on its largest suitable flat face.
     #[arg(long)]
     lay_flat: bool,
-    /// Turn the part onto the flat face that leaves the least overhang, among equals the one that leaves the part lowest; a
-    /// preform so that welding and milling it costs least.
+    /// Turn the part onto the flat face that leaves the least overhang (of several, the one on which the part is lowest), or a
+    /// preform so that it costs least to weld and mill.
     #[arg(long, conflicts_with = "lay_flat")]
     orient: bool,
     /// Move the middle of the part to x = y = 0.
@@ -46,7 +46,7 @@ pub(crate) struct Placing {
     /// Move the part along x and y after all else, in mm, such as --shift 250,-40.
     #[arg(long, value_parser = parse_shift, value_name = "X,Y", allow_hyphen_values = true, default_value = "0,0")]
     shift: DVec2,
-    /// Use the triangles that are there in an STL file that ends too early or holds more than it says.
+    /// Accept an STL file that ends too early or holds more than it says, and use the triangles that it does have.
     #[arg(long)]
     accept_damaged: bool,
 }

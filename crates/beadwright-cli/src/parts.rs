@@ -64,8 +64,7 @@ fn each(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let mut all = Vec::new();
     for part in planned {
-        let told = part.write(arguments, &build.places)?;
-        all.extend(told);
+        all.extend(part.write(arguments, &build.places)?);
     }
     if arguments.json {
         writeln!(std::io::stdout(), "{:#}", serde_json::Value::from(all))?;

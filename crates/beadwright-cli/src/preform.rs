@@ -23,11 +23,11 @@ pub(crate) struct Arguments {
     model: model::Model,
     #[command(flatten)]
     wanted: profile::Wanted,
-    /// File to write: the preform as STL, or with the part in it as 3MF; NAME_preform.stl if left out.
+    /// File to write: the preform alone as STL, or with the part inside it as 3MF; NAME_preform.stl if left out.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Also write a table (CSV) of the part's faces, each with its area, place, normal, and the least, mean and most metal over
-    /// it.
+    /// Also write a table (CSV) of the part's faces, each with its area, place and normal, and the least, mean and greatest
+    /// thickness of the metal over it.
     #[arg(long, value_name = "FILE")]
     faces: Option<PathBuf>,
     /// Print the figures as JSON instead of the summary.
@@ -112,7 +112,7 @@ fn rows(figures: &Figures, profile: &Profile) -> Vec<(&'static str, String)> {
     let ratio = |kg: f64, ratio: f64| format!("{kg:.3} kg, {ratio:.2} kg bought per kg of the part");
     let plate = match figures.cut_height {
         Some(cut) => format!("{:.3} kg, sawn off {cut:.1} mm above it", figures.plate_kg),
-        None => format!("{:.3} kg, part of the part", figures.plate_kg),
+        None => format!("{:.3} kg, stays with the part", figures.plate_kg),
     };
     let mut rows = vec![
         ("part", format!("{:.3} kg", figures.part_kg)),

@@ -22,7 +22,7 @@ pub(crate) enum Command {
     Show {
         /// Name of the profile.
         name: String,
-        /// Save it as this new file instead, and next to it the schema by which editors complete keys.
+        /// Save it as this new file instead, with the schema that lets editors complete keys next to it.
         #[arg(long, short, value_name = "FILE")]
         output: Option<PathBuf>,
     },
@@ -41,8 +41,8 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
         Command::List { json: false } => {
             for (name, place, profile) in known() {
                 let own = if place == "built in" { String::new() } else { format!(" ({place})") };
-                let told = profile.map_or_else(|error| format!("error: {error:#}"), |profile| profile.description);
-                writeln!(out, "{name:<18} {told}{own}")?;
+                let about = profile.map_or_else(|error| format!("error: {error:#}"), |profile| profile.description);
+                writeln!(out, "{name:<18} {about}{own}")?;
             }
         }
         Command::List { json: true } => {

@@ -31,9 +31,9 @@ pub(crate) fn task() -> anyhow::Result<(Task, Bar)> {
     let task = Task::with_progress(move |stage, fraction| {
         shown.set_message(stage.name());
         shown.set_position((fraction * 1000.0) as u64);
-        let told = ticking.lock().unwrap_or_else(PoisonError::into_inner).step(stage, fraction, Instant::now());
-        if let Some(told) = told.filter(|_| !quiet) {
-            shown.suspend(|| eprintln!("{told}"));
+        let reported = ticking.lock().unwrap_or_else(PoisonError::into_inner).step(stage, fraction, Instant::now());
+        if let Some(reported) = reported.filter(|_| !quiet) {
+            shown.suspend(|| eprintln!("{reported}"));
         }
     });
     stopped_by_ctrl_c(&task)?;
@@ -77,12 +77,12 @@ struct Clock {
     now: Option<(Stage, Instant)>,
     spent: Vec<(Stage, Duration)>,
     /// The last stage whose remaining time was reported.
-    told: Option<Stage>,
+    reported: Option<Stage>,
 }
 
 impl Clock {
     fn new(begun: Instant) -> Self {
-        Self { begun, now: None, spent: Vec::new(), told: None }
+        Self { begun, now: None, spent: Vec::new(), reported: None }
     }
 
     /// Takes note of a step; once per stage, a sentence if it will take long.
@@ -96,14 +96,14 @@ impl Clock {
             }
         };
         let elapsed = at.saturating_duration_since(since);
-        if elapsed < SOON || !(fraction > 0.0 && fraction < 1.0) || self.told == Some(stage) {
+        if elapsed < SOON || !(fraction > 0.0 && fraction < 1.0) || self.reported == Some(stage) {
             return None;
         }
         let rest = elapsed.mul_f64((1.0 - fraction) / fraction);
         if rest < LONG {
             return None;
         }
-        self.told = Some(stage);
+        self.reported = Some(stage);
         let minutes = (rest.as_secs_f64() / 60.0).ceil();
         Some(format!(
             "{}: {:.0} % done, about {minutes:.0} min to go. Ctrl-C stops it.",
@@ -151,15 +151,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_rest_is_told_once_a_stage() {
+    fn a_long_rest_is_reported_once_a_stage() {
         let begun = Instant::now();
         let at = |seconds: u64| begun + Duration::from_secs(seconds);
         let mut clock = Clock::new(begun);
         assert_eq!(clock.step(Stage::Plan, 0.0, at(0)), None);
         // Too early to tell, then 95 s to go for 5 s of work.
         assert_eq!(clock.step(Stage::Plan, 0.04, at(4)), None);
-        let told = clock.step(Stage::Plan, 0.05, at(5)).unwrap();
-        assert!(told.starts_with("plan: 5 % done, about 2 min to go"), "{told}");
+        let reported = clock.step(Stage::Plan, 0.05, at(5)).unwrap();
+        assert!(reported.starts_with("plan: 5 % done, about 2 min to go"), "{reported}");
         assert_eq!(clock.step(Stage::Plan, 0.06, at(6)), None);
         // The next stage has less than a minute to go.
         assert_eq!(clock.step(Stage::Deposit, 0.0, at(10)), None);

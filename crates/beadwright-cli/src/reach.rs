@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     /// HTML page to write, with joint angles and margins over the program.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Write the joints over the program: .csv (a table, °) or .json (ROS 2's trajectory_msgs/JointTrajectory, rad).
+    /// Write the joint angles over the program: .csv (a table, °) or .json (ROS 2's trajectory_msgs/JointTrajectory, rad).
     #[arg(long, value_name = "FILE", value_parser = parse_trajectory)]
     trajectory: Option<PathBuf>,
     /// Print machine-readable JSON.
@@ -94,8 +94,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             writeln!(out, "  poses computed         {} ({rate:.0} a second)", reach.computed)?;
         }
         // The first bad one is the error below.
-        let told = reach.findings.iter().filter(|f| reach.first_bad() != Some(f));
-        told.into_iter().try_for_each(|f| writeln!(out, "note: {}", f.sentence()))?;
+        let others = reach.findings.iter().filter(|f| reach.first_bad() != Some(f));
+        others.into_iter().try_for_each(|f| writeln!(out, "note: {}", f.sentence()))?;
         match suggestion {
             Some(Some(better)) => writeln!(out, "\n{}", better.sentence())?,
             Some(None) => writeln!(
@@ -109,7 +109,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             writeln!(out, "\nplots in {}", page.display())?;
         }
         if let Some((path, trajectory)) = &trajectory {
-            writeln!(out, "\n{} points of the joints in {}", trajectory.points.len(), path.display())?;
+            writeln!(out, "\njoint angles at {} points in {}", trajectory.points.len(), path.display())?;
         }
     }
     match reach.first_bad() {

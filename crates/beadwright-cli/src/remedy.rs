@@ -64,7 +64,7 @@ fn part(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
         PartError::HeightOfSolid => "Leave --height out.",
         PartError::Import(ImportError::Outline { .. }) => "--height gives it one.",
         PartError::Import(ImportError::TooFar { .. }) => "--units sets the unit.",
-        PartError::Import(ImportError::Damaged { .. }) => "--accept-damaged uses what there is of it.",
+        PartError::Import(ImportError::Damaged { .. }) => "--accept-damaged uses the triangles that it does have.",
         _ => return None,
     })
 }

@@ -97,7 +97,7 @@ fn print(out: &mut impl Write, loaded: &beadwright::read_back::ReadBack, entry: 
 
 /// The worst places, and how the stack grows.
 fn print_patches(out: &mut impl Write, entry: &Entry) -> std::io::Result<()> {
-    const TOLD: usize = 5;
+    const LISTED: usize = 5;
     let place =
         |p: &beadwright::deposit::Patch| format!("layer {}, x {:.1} y {:.1}", p.layer + 1, p.place.x, p.place.y);
     let mut voids: Vec<_> = entry.layers.iter().flat_map(|l| &l.voids).collect();
@@ -107,13 +107,13 @@ fn print_patches(out: &mut impl Write, entry: &Entry) -> std::io::Result<()> {
     if !voids.is_empty() {
         writeln!(out, "\n  largest voids")?;
     }
-    for void in voids.iter().take(TOLD) {
+    for void in voids.iter().take(LISTED) {
         writeln!(out, "    {:8.2} mm²  {}", void.area, place(void))?;
     }
     if !peaks.is_empty() {
         writeln!(out, "\n  highest peaks")?;
     }
-    for peak in peaks.iter().take(TOLD) {
+    for peak in peaks.iter().take(LISTED) {
         let cause = peak.cause.map_or("", |c| c.name());
         writeln!(out, "    {:8.2} mm   {}  {cause}", peak.height, place(peak))?;
     }

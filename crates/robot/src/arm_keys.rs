@@ -42,17 +42,17 @@ pub(crate) enum Wrong {
 impl Wrong {
     /// The error with its line.
     pub(crate) fn at(self, text: &str) -> CellError {
-        let told = |key: &str, reason: String| CellError::Text { line: line_of_key(text, key), reason };
+        let at = |key: &str, reason: String| CellError::Text { line: line_of_key(text, key), reason };
         match self {
-            Self::Missing(key) => told("arm", format!("the key \"{key}\" is missing here.")),
-            Self::Mixed(key) => told(
+            Self::Missing(key) => at("arm", format!("the key \"{key}\" is missing here.")),
+            Self::Mixed(key) => at(
                 &format!("arm.{key}"),
                 format!(
                     "the key \"{key}\" does not go with the others: an arm has lengths (a1 to c4), or rows \"dh\", or a file \
                      \"urdf\" with \"base\" and \"tip\"."
                 ),
             ),
-            Self::Rows(reason) => told("arm.dh", reason),
+            Self::Rows(reason) => at("arm.dh", reason),
             Self::Other(error) => error,
         }
     }

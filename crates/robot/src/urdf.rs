@@ -151,8 +151,8 @@ fn arm(way: &[Joint<'_>]) -> Result<ArmTable, UrdfError> {
     let count = turning.len();
     let turning: [_; 6] = turning.try_into().map_err(|_| {
         let names: Vec<&str> = way.iter().filter(|j| j.kind != "fixed").map(|j| j.name).collect();
-        let told = if count == 0 { "none".to_owned() } else { format!("{count}: {}", names.join(", ")) };
-        UrdfError::Tree(format!("six turning joints are needed from foot to flange, but there are {told}"))
+        let found = if count == 0 { "none".to_owned() } else { format!("{count}: {}", names.join(", ")) };
+        UrdfError::Tree(format!("six turning joints are needed from foot to flange, but there are {found}"))
     })?;
     let chain = Chain::new(&turning.map(|(frame, axis, _)| (frame, axis)), &before)?;
     let speeds = turning.map(|(_, _, (_, speed))| speed);

@@ -19,11 +19,11 @@ impl Sweep {
 
 /// Reads `KEY=V1,V2,…` or `KEY=A:B:N`.
 pub(super) fn parse(text: &str) -> Result<Sweep, String> {
-    let told = || "a key and its values are expected, such as layers.height=1.8,2.0,2.2 or layers.height=1.8:2.2:3";
-    let (key, values) = text.split_once('=').ok_or_else(told)?;
+    let expected = || "a key and its values are expected, such as layers.height=1.8,2.0,2.2 or layers.height=1.8:2.2:3";
+    let (key, values) = text.split_once('=').ok_or_else(expected)?;
     let (key, values) = (key.trim(), values.trim());
     if key.is_empty() || values.is_empty() {
-        return Err(told().to_owned());
+        return Err(expected().to_owned());
     }
     let ends: Vec<&str> = values.split(':').collect();
     let values: Vec<String> = match ends[..] {
@@ -84,8 +84,8 @@ mod tests {
     fn every_value_meets_every_other() {
         let sweeps = [parse("a=1,2").unwrap(), parse("b=x,y,z").unwrap()];
         let points = points(&sweeps);
-        let told: Vec<String> = points.iter().map(|point| point.iter().map(|(_, v)| v.as_str()).collect()).collect();
-        assert_eq!(told, ["1x", "1y", "1z", "2x", "2y", "2z"]);
+        let written: Vec<String> = points.iter().map(|point| point.iter().map(|(_, v)| v.as_str()).collect()).collect();
+        assert_eq!(written, ["1x", "1y", "1z", "2x", "2y", "2z"]);
         assert_eq!(super::points(&[]), [Vec::new()]);
     }
 }

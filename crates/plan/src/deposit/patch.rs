@@ -181,10 +181,10 @@ pub(super) fn patches(runs: &[Run], grid: &Grid, layer: &Layer, nominal: &Nomina
     voids.sort_by(|a, b| b.1.area.total_cmp(&a.1.area));
     peaks.sort_by(|a, b| b.1.height.total_cmp(&a.1.height));
     let plain = |(_, patch)| patch;
-    let told = |(_, patch): (bool, Patch)| Patch { cause: cause(patch.place, &layer.passes, nominal), ..patch };
+    let explained = |(_, patch): (bool, Patch)| Patch { cause: cause(patch.place, &layer.passes, nominal), ..patch };
     // Causes are looked up only for the peaks that are reported.
     let rest = peaks.split_off(peaks.len().min(TOLD_PEAKS));
-    let peaks = peaks.into_iter().map(told).chain(rest.into_iter().map(plain)).collect();
+    let peaks = peaks.into_iter().map(explained).chain(rest.into_iter().map(plain)).collect();
     (voids.into_iter().map(plain).collect(), peaks)
 }
 

@@ -66,8 +66,8 @@ impl PassHeat {
     pub fn ahead(&self, stretch: Range<f64>, spacing: f64) -> f64 {
         let [first, last] = [stretch.start, stretch.end].map(|way| (way / spacing).round() as usize);
         let end = (last + 1).min(self.along.len());
-        let told = &self.along[first.min(end.saturating_sub(1))..end];
-        if told.is_empty() { self.start } else { told.iter().sum::<f64>() / told.len() as f64 }
+        let known = &self.along[first.min(end.saturating_sub(1))..end];
+        if known.is_empty() { self.start } else { known.iter().sum::<f64>() / known.len() as f64 }
     }
 
     /// The hottest place ahead of the torch: its index in `along`, and its temperature, °C.

@@ -75,7 +75,7 @@ impl Own {
         }
         let settings =
             Settings::read(&files[SETTINGS]).map_err(|(line, reason)| OwnError { line, ..error(SETTINGS, reason) })?;
-        let environment = environment::of(&settings, files).map_err(|fault| told(folder, &fault))?;
+        let environment = environment::of(&settings, files).map_err(|fault| explained(folder, &fault))?;
         Ok(Self { folder: folder.to_owned(), settings, environment })
     }
 
@@ -105,7 +105,7 @@ pub fn is_folder(post: &str) -> bool {
 }
 
 /// A fault of the template engine as an error with a place.
-fn told(folder: &str, fault: &minijinja::Error) -> OwnError {
+fn explained(folder: &str, fault: &minijinja::Error) -> OwnError {
     let file = fault.name().unwrap_or(SETTINGS).to_owned();
     // The templates in the settings have lines of their own.
     let line = fault.line().filter(|_| !file.starts_with(SETTINGS));

@@ -36,8 +36,8 @@ pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
             );
         }
     }
-    let tells_retract = || own.environment.templates().any(|(_, template)| template.source().contains("wire_retract"));
-    if job.weld.ends.wire_retract > 0.0 && !job.dry_run && !tells_retract() {
+    let writes_retract = || own.environment.templates().any(|(_, template)| template.source().contains("wire_retract"));
+    if job.weld.ends.wire_retract > 0.0 && !job.dry_run && !writes_retract() {
         let reason = "start_stop.wire_retract would be lost. Write {{ wire_retract | fixed(1) }} (mm) or \
                       {{ wire_retract_time | fixed(2) }} (s) at step.kind == \"arc-off\".";
         return refuse(LAYER, reason.to_owned());

@@ -3,7 +3,7 @@
 use super::data::Steps;
 use super::environment::{FUEL, FUEL_PER_STEP};
 use super::settings::{LineEnds, Settings};
-use super::{BEGIN, END, FILE, LAYER, LAYER_FILE, Own, OwnError, data, told};
+use super::{BEGIN, END, FILE, LAYER, LAYER_FILE, Own, OwnError, data, explained};
 use crate::dialect::writing::{Chunk, DialectError, Job, Writer};
 use crate::program::LayerProgram;
 use bead_plan::layer::Extent;
@@ -56,7 +56,7 @@ impl OwnWriter {
     fn render(&mut self, template: &str, steps: usize, data: Value) -> Result<String, OwnError> {
         self.environment.set_fuel(Some(FUEL + FUEL_PER_STEP * steps as u64));
         let rendered = self.environment.get_template(template).and_then(|template| template.render(data));
-        rendered.map_err(|fault| told(&self.folder, innermost(&fault)))
+        rendered.map_err(|fault| explained(&self.folder, innermost(&fault)))
     }
 
     fn text(&mut self, template: &str, steps: usize, data: Value) -> Result<String, OwnError> {

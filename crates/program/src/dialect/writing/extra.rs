@@ -34,7 +34,7 @@ impl Extra {
     }
 
     /// What it is in a profile, and what to do without it.
-    fn told(self) -> (&'static str, &'static str) {
+    fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Restart => (
                 "program.restart = true",
@@ -88,7 +88,7 @@ pub(super) fn check(dialect: &'static str, section: &dyn Section, job: &Job<'_>)
     }
     let missing = Extra::ALL.into_iter().find(|extra| extra.is_asked(job) && !section.supports(*extra));
     missing.map_or(Ok(()), |extra| {
-        let (what, remedy) = extra.told();
+        let (what, remedy) = extra.words();
         Err(DialectError::Cannot { dialect, what, remedy })
     })
 }

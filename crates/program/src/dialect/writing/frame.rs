@@ -161,7 +161,7 @@ pub(in crate::dialect) trait Syntax: Send {
 
     fn frame_mut(&mut self) -> &mut Frame;
 
-    /// The most characters of the program's name, where layers have numbers of so many digits.
+    /// The most characters that the program's name can have; `digits` are those of the layers' numbers.
     fn longest_name(&self, _digits: usize) -> usize {
         usize::MAX
     }
