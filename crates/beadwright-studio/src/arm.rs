@@ -2,9 +2,9 @@
 
 use crate::known::Known;
 use crate::view::ViewState;
+use crate::view3d::Stance;
 use beadwright::robot::body::{Capsule, capsules};
 use beadwright::robot::{Cell, Joints, Reach, Stop};
-use glam::DVec3;
 
 /// A place of the torch: the pass that it lays or comes to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,8 +13,8 @@ pub struct Place {
     pub layer: usize,
     /// The pass in its layer, from 0.
     pub pass: usize,
-    /// The wire's tip, mm.
-    pub at: DVec3,
+    /// The torch.
+    pub torch: Stance,
 }
 
 /// An arm at a place.
@@ -35,10 +35,10 @@ pub fn stand(cell: &Cell, reach: &Reach, place: &Place) -> Option<Stand> {
     let first = reach.poses.partition_point(|(stop, _)| (stop.layer, stop.pass) < key);
     let of_pass = reach.poses[first..].iter().take_while(|(stop, _)| (stop.layer, stop.pass) == key);
     let reached = of_pass.filter_map(|(stop, pose)| Some((stop, pose.as_ref()?)));
-    let far = |stop: &Stop| stop.at.distance_squared(place.at);
+    let far = |stop: &Stop| stop.at.distance_squared(place.torch.at);
     let (stop, pose) = reached.min_by(|a, b| far(a.0).total_cmp(&far(b.0)))?;
     let (arm, base_from_part) = (cell.arm(), reach.place.base_from_part());
-    let tool = Stop { at: place.at, ..*stop }.tool(pose.torch_angle);
+    let tool = Stop { at: place.torch.at, ..*stop }.tool(pose.torch_angle);
     let flange = base_from_part.then(&tool).then(&cell.flange_from_tool().inverse());
     let ways = arm.inverse(&flange);
     let (_, joints) = ways.into_iter().find(|(branch, _)| *branch == reach.branch)?;
@@ -60,18 +60,19 @@ impl Known<'_> {
             let now = scene.at_time(view.seconds)?;
             let beads = scene.layer(now.layer)?;
             let pass = beads.pass_of(now.segment.min(beads.len().checked_sub(1)?));
-            return Some(Place { layer: now.layer, pass, at: now.point });
+            return Some(Place { layer: now.layer, pass, torch: now.torch });
         }
         if let Some(chosen) = view.chosen.and_then(|chosen| self.pick(chosen)) {
-            let bead = scene.layer(chosen.layer)?.beads().get(chosen.segment)?;
-            let at = (bead.from() + bead.to()).as_dvec3() / 2.0;
-            return Some(Place { layer: chosen.layer, pass: chosen.pass, at });
+            let beads = scene.layer(chosen.layer)?;
+            let segments = beads.segments_of(beads.piece(chosen.segment));
+            let bead = beads.beads().get(segments.start.midpoint(segments.end))?;
+            return Some(Place { layer: chosen.layer, pass: chosen.pass, torch: bead.torch(0.5) });
         }
         let layer = view.last;
         let beads = scene.layer(layer)?;
         let shown = (view.progress * beads.len() as f64).round() as usize;
         let bead = beads.beads().get(shown.max(1) - 1)?;
-        Some(Place { layer, pass: beads.pass_of(shown.max(1) - 1), at: bead.to().as_dvec3() })
+        Some(Place { layer, pass: beads.pass_of(shown.max(1) - 1), torch: bead.torch(1.0) })
     }
 
     /// The pose of the arm there; none where it is not shown, not yet computed, or cannot get there.

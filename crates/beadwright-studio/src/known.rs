@@ -21,6 +21,7 @@ use beadwright::fill::StrategyName;
 use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context};
 use eframe::egui_wgpu::RenderState;
+use glam::DVec3;
 use std::path::PathBuf;
 use std::rc::Rc;
 
@@ -177,7 +178,12 @@ impl<'a> Known<'a> {
 
     /// The plate on which the part is built, if the profile has one.
     pub(crate) fn plate(self) -> Option<Plate> {
-        let plate = self.plans.own.profile.as_ref()?.substrate.as_ref()?;
+        let profile = self.plans.own.profile.as_ref()?;
+        let plate = profile.substrate.as_ref()?;
+        let ground = profile.layers.charts().next().map(|chart| chart.sheet(0.0).at(DVec3::ZERO).normal);
+        if ground.is_none_or(|up| !up.abs_diff_eq(DVec3::Z, 1e-6)) {
+            return None;
+        }
         let (low, high) = self.plans.own.part.as_ref()?.bounds();
         let (low, high) = (low.truncate() - plate.margin, high.truncate() + plate.margin);
         Some(Plate { low, high, thickness: plate.thickness })
@@ -185,8 +191,9 @@ impl<'a> Known<'a> {
 
     /// A bead, given by its layer, its pass and its piece of the pass.
     pub(crate) fn pick(self, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
-        let span = self.plans.own.scene.layer(layer)?.passes().get(pass)?;
-        Some(Pick { layer, pass, segment: span.segments.start + piece })
+        let beads = self.plans.own.scene.layer(layer)?;
+        let piece = beads.piece(beads.passes().get(pass)?.segments.start) + piece;
+        Some(Pick { layer, pass, segment: beads.segments_of(piece).start })
     }
 
     /// What the 3-D view shows.
@@ -194,7 +201,7 @@ impl<'a> Known<'a> {
         let inner = view.scan && self.scan().is_some() || view.stock && self.has_stock();
         let scan = inner && view.mode == Mode::Solid && !view.laying;
         let arm = self.arm(view);
-        let at_arm = self.torch_place(view).filter(|_| arm.is_some()).map(|place| place.at);
+        let at_arm = self.torch_place(view).filter(|_| arm.is_some()).map(|place| place.torch);
         let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
         Style {
             colour: view.colour,

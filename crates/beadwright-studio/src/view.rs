@@ -1,7 +1,7 @@
 //! What is shown, and how. None of it belongs to the project.
 
 use crate::view2d::Show;
-use crate::view3d::{Colour, Grip, Scene, Section};
+use crate::view3d::{Colour, Grip, Scene, Section, Stance};
 
 /// Which view fills the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -48,8 +48,8 @@ pub struct ViewState {
     pub rate: f64,
     /// Time the torch has reached while it plays, s from the start of the program.
     pub seconds: f64,
-    /// Where the torch is while it plays, mm.
-    pub torch: Option<glam::DVec3>,
+    /// Where the torch is while it plays.
+    pub torch: Option<Stance>,
     /// What the colours mean.
     pub colour: Colour,
     /// Whether the part is shown.
@@ -206,7 +206,7 @@ impl ViewState {
         let pieces = scene.layer(at.layer).map_or(1, |layer| layer.len().max(1));
         self.look_at(at.layer);
         self.progress = at.segment as f64 / pieces as f64;
-        self.torch = Some(at.point);
+        self.torch = Some(at.torch);
         self.playing = self.seconds < total;
     }
 

@@ -34,8 +34,8 @@ fn figures(known: Known<'_>, view: &View<'_>) -> Option<Vec<String>> {
     let (layer, pass, piece) = view.state.chosen?;
     let (plan, scene) = (&known.plans.own, &known.plans.own.scene);
     let beads = scene.layer(layer)?;
-    let (span, found) = (beads.passes().get(pass)?, plan.layer(layer)?.passes.get(pass)?);
-    let segment = span.segments.start + piece;
+    let found = plan.layer(layer)?.passes.get(pass)?;
+    let segment = studio.pick((layer, pass, piece))?.segment;
     let seconds = scene.seconds_before(layer) + beads.times(segment)?.0;
     let mut figures = vec![
         format!("{} {}", known.t("layer"), layer + 1),

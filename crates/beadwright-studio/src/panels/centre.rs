@@ -7,6 +7,7 @@ use crate::state::PlanState;
 use crate::steps::Looked;
 use crate::view::Mode;
 use crate::view2d::{Drawing, Named, View2d};
+use crate::view3d::LayerBeads;
 use eframe::egui::{CentralPanel, Ui};
 
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
@@ -54,12 +55,12 @@ pub(super) fn flat(
     scale: Option<&str>,
 ) -> Option<Option<(usize, usize)>> {
     let layer = plan.layer(state.last)?;
-    let count: usize = layer.passes.iter().map(|pass| pass.segments().count()).sum();
+    let shown = |beads: &LayerBeads| beads.pieces_of((state.progress * beads.len() as f64).ceil() as usize);
     let subject = Drawing {
         layer,
         judgement: plan.judgements.get(state.last),
         steps: (looked.of(state.last), words.steps),
-        pieces: (state.progress * count as f64).ceil() as usize,
+        pieces: plan.scene.layer(state.last).map_or(0, |beads| shown(beads)),
         scale,
         nothing: words.nothing,
         chosen: state.chosen.filter(|(of, ..)| *of == state.last).map(|(_, pass, piece)| (pass, piece)),

@@ -169,8 +169,9 @@ fn caption(known: Known<'_>, view: &View<'_>) -> String {
     format!("{}{}", plate.unwrap_or_default(), known.t("grid"))
 }
 
-/// The picked bead, its segment counted within its pass instead of within its layer.
+/// The picked bead: the piece of its pass that the segment belongs to.
 fn chosen(known: Known<'_>, pick: Pick) -> Option<(usize, usize, usize)> {
-    let span = known.plans.own.scene.layer(pick.layer)?.passes().get(pick.pass)?;
-    Some((pick.layer, pick.pass, pick.segment - span.segments.start))
+    let beads = known.plans.own.scene.layer(pick.layer)?;
+    let first = beads.piece(beads.passes().get(pick.pass)?.segments.start);
+    Some((pick.layer, pick.pass, beads.piece(pick.segment) - first))
 }

@@ -1,10 +1,12 @@
 //! One layer as it is drawn and timed: its segments in print order, the passes, and the travels between them.
 //!
-//! This is plain data, made on a worker thread. Numbers that only the picture needs are `f32`.
+//! This is plain data, made on a worker thread. Numbers that only the picture needs are `f32`. Layers that are not level are
+//! where they lie in space: their pieces are divided into segments that follow them.
 
+use super::lie::{Lie, Stance, packed, unpacked};
 use beadwright::layer::Layer;
-use beadwright::pass::{Pass, PassKind};
-use beadwright::weld::{Torch, path};
+use beadwright::pass::{Pass, PassKind, Segment};
+use beadwright::weld::{Torch, Transfer, Way, path};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -33,15 +35,17 @@ pub struct Bead {
     to: [f32; 3],
     /// Height; negative if this segment is mitred into the next.
     height: f32,
+    /// The direction out of its layer, packed: 0 straight up.
+    pub(super) up: u32,
 }
 
 impl Bead {
-    /// Where it begins, mm; z is its top.
+    /// Where it begins, mm, on its top.
     pub fn from(&self) -> Vec3 {
         self.from.into()
     }
 
-    /// Where it ends, mm; z is its top.
+    /// Where it ends, mm, on its top.
     pub fn to(&self) -> Vec3 {
         self.to.into()
     }
@@ -55,6 +59,37 @@ impl Bead {
     pub fn height(&self) -> f32 {
         self.height.abs()
     }
+
+    /// The direction out of its layer, of length 1: along it the bead is as high as it is.
+    pub fn up(&self) -> Vec3 {
+        unpacked(self.up)
+    }
+
+    /// The torch at a fraction (0 to 1) of its length.
+    pub fn torch(&self, part: f64) -> Stance {
+        Stance { at: self.from().as_dvec3().lerp(self.to().as_dvec3(), part), up: self.up().as_dvec3() }
+    }
+
+    /// The ends of the line in its middle, mm.
+    pub(super) fn middle_line(&self) -> [Vec3; 2] {
+        let below = self.up() * (self.height() / 2.0);
+        [self.from() - below, self.to() - below]
+    }
+
+    /// How far it reaches from that line along x, y and z, mm.
+    fn reach(&self) -> Vec3 {
+        let (across, high) = (self.width() / 2.0, self.height() / 2.0);
+        if self.up == 0 {
+            return Vec3::new(across, across, high);
+        }
+        let part = self.up() * self.up();
+        (across * across * (Vec3::ONE - part) + high * high * part).map(|square| square.max(0.0).sqrt())
+    }
+
+    /// The round end of it at one of its ends.
+    fn cap(&self, at: [f32; 3]) -> Cap {
+        Cap { at, width: self.width(), height: self.height(), up: self.up }
+    }
 }
 
 /// A round end or joint, as the graphics card reads it; mm.
@@ -64,6 +99,8 @@ pub(super) struct Cap {
     pub at: [f32; 3],
     pub width: f32,
     pub height: f32,
+    /// As of a bead.
+    pub up: u32,
 }
 
 /// A pass among the segments of its layer. Times are s from the start of the layer.
@@ -84,7 +121,7 @@ pub struct PassSpan {
     /// When the torch may leave.
     pub end: f64,
     /// The travel to it: from where the torch was, up, across, down; empty before the very first pass.
-    pub travel: Vec<DVec3>,
+    pub travel: Vec<Stance>,
 }
 
 /// A layer's segments, passes and travels in print order.
@@ -95,6 +132,8 @@ pub struct LayerBeads {
     pub(super) speeds: Vec<f32>,
     /// When each segment ends, s from the start of the layer.
     pub(super) ends: Vec<f32>,
+    /// The piece of the layer that each segment is part of; empty where each is a whole piece.
+    pieces: Vec<u32>,
     pub(super) passes: Vec<PassSpan>,
     pub(super) caps: Vec<Cap>,
     /// The segment with which each cap appears.
@@ -124,6 +163,7 @@ impl LayerBeads {
             beads: Vec::with_capacity(count),
             speeds: Vec::with_capacity(count),
             ends: Vec::with_capacity(count),
+            pieces: Vec::new(),
             passes: Vec::with_capacity(layer.passes.len()),
             caps: Vec::new(),
             cap_segments: Vec::new(),
@@ -132,13 +172,20 @@ impl LayerBeads {
             boxes: Vec::new(),
             seconds: 0.0,
         };
+        // Up from the layer before, as it lies.
+        let begins = layer.passes.first().is_some_and(|pass| pass.start().is_some());
+        let before = torch.at().filter(|_| begins).map(|at| Lie(torch.sheet()).stance(at));
+        let up = if begins { torch.retract() } else { Way::default() };
         let begun = torch.begin_layer(layer, 0);
-        beads.seconds = begun.moving() + begun.waiting();
+        beads.seconds = up.moving + begun.moving() + begun.waiting();
         for (i, pass) in layer.passes.iter().enumerate() {
             beads.add(pass, layer.height, torch);
             if let (Some(span), Some(temperature)) = (beads.passes.last_mut(), layer.temperatures.get(i)) {
                 span.temperature = Some(temperature.start as f32);
             }
+        }
+        if let (Some(from), Some(first)) = (before, beads.passes.first_mut()) {
+            first.comes_from(from, up.moving, begun.transfer.as_ref());
         }
         beads.boxes = beads.beads.chunks(BLOCK).map(box_of).collect();
         beads
@@ -148,7 +195,8 @@ impl LayerBeads {
         let first = self.beads.len();
         let (travel_start, mut arrival, mut travel) = (self.seconds, self.seconds, Vec::new());
         if let Some(start) = pass.start() {
-            let (from, up) = (torch.at(), torch.retract());
+            torch.turn_towards(start);
+            let (from, up) = (torch.at(), if self.passes.is_empty() { Way::default() } else { torch.retract() });
             arrival += torch.wait(pass.wait).map_or(0.0, |pause| pause.moving + pause.seconds);
             let ways = [up, torch.approach(start)];
             arrival += ways.iter().map(|way| way.moving).sum::<f64>();
@@ -165,28 +213,43 @@ impl LayerBeads {
             arc_start += welded.before;
             // Overlaps, slow starts and acceleration are spread evenly along the pass.
             let (stretch, mut clock) = (if even > 0.0 { welded.moving / even } else { 1.0 }, arc_start);
-            for (segment, speed) in pass.segments().zip(speeds) {
-                clock += segment.length() / speed * stretch;
-                let (from, to) = (segment.from.as_vec3().into(), segment.to.as_vec3().into());
-                self.beads.push(Bead { from, width: segment.width as f32, to, height: height as f32 });
-                self.speeds.push(speed as f32);
-                self.ends.push(clock as f32);
+            let (lie, pieces) = (Lie(torch.sheet()), self.piece_count());
+            for (i, (piece, speed)) in pass.segments().zip(speeds).enumerate() {
+                self.lay(&piece, height, lie);
+                let along = |at: DVec3| clock + piece.from.distance(at) / speed * stretch;
+                self.ends.extend(lie.divided(piece.from, piece.to).map(|at| along(at) as f32));
+                clock = along(piece.to);
+                self.speeds.resize(self.beads.len(), speed as f32);
+                if !lie.is_level() {
+                    self.pieces.resize(self.beads.len(), (pieces + i) as u32);
+                }
             }
             self.seconds = arc_start + welded.moving + welded.crater + welded.after;
         }
         let segments = first..self.beads.len();
         self.join(segments.clone());
         self.roughen(segments.clone());
-        let kind = pass.kind;
+        let (kind, travel) = (pass.kind, Lie(torch.sheet()).line(&travel));
         let (temperature, end) = (None, self.seconds);
         self.passes.push(PassSpan { kind, temperature, segments, travel_start, arrival, arc_start, end, travel });
+    }
+
+    /// Lays a piece of a pass.
+    fn lay(&mut self, piece: &Segment, height: f64, lie: Lie<'_>) {
+        let (width, mut before, mut start) = (piece.width as f32, piece.from, lie.stance(piece.from));
+        for at in lie.divided(piece.from, piece.to) {
+            let (middle, end) = (before.midpoint(at), lie.stance(at));
+            let (from, to) = (start.at.as_vec3().into(), end.at.as_vec3().into());
+            let height = (height * lie.rise(middle)) as f32;
+            self.beads.push(Bead { from, width, to, height, up: packed(lie.stance(middle).up) });
+            (before, start) = (at, end);
+        }
     }
 
     /// Mitres the gentle bends of a pass and rounds its ends and sharp corners.
     fn join(&mut self, segments: Range<usize>) {
         let Some(first) = self.beads.get(segments.start) else { return };
-        let start = Cap { at: first.from, width: first.width, height: first.height };
-        self.caps.push(start);
+        self.caps.push(first.cap(first.from));
         self.cap_segments.push(segments.start as u32);
         for i in segments.clone() {
             let here = self.beads[i];
@@ -195,7 +258,7 @@ impl LayerBeads {
                 self.beads[i].height = -here.height;
                 self.beads[i + 1].width = -self.beads[i + 1].width;
             } else {
-                self.caps.push(Cap { at: here.to, width: here.width.abs(), height: here.height });
+                self.caps.push(here.cap(here.to));
                 self.cap_segments.push(i as u32);
             }
         }
@@ -210,7 +273,7 @@ impl LayerBeads {
                 last += 1;
             }
             let (begin, end) = (self.beads[first], self.beads[last]);
-            self.rough.push(Bead { to: end.to, height: end.height, ..begin });
+            self.rough.push(Bead { to: end.to, height: end.height, up: between(&begin, &end), ..begin });
             self.rough_segments.push(last as u32);
             first = last + 1;
         }
@@ -239,7 +302,8 @@ impl LayerBeads {
     /// Memory that the segments take, bytes.
     pub(super) fn bytes(&self) -> usize {
         let beads = (self.beads.capacity() + self.rough.capacity()) * size_of::<Bead>();
-        let numbers = self.speeds.capacity() + self.ends.capacity() + self.cap_segments.capacity();
+        let numbers = self.speeds.capacity() + self.ends.capacity() + self.pieces.capacity();
+        let numbers = numbers + self.cap_segments.capacity();
         let caps = self.caps.capacity() * size_of::<Cap>();
         let boxes = self.boxes.capacity() * size_of::<(Vec3, Vec3)>();
         beads + 4 * (numbers + self.rough_segments.capacity()) + caps + boxes
@@ -258,6 +322,29 @@ impl LayerBeads {
     /// The pass that a segment belongs to.
     pub fn pass_of(&self, segment: usize) -> usize {
         self.passes.partition_point(|p| p.segments.end <= segment)
+    }
+
+    /// The piece of the layer, counted over all its passes, that a segment is part of.
+    pub fn piece(&self, segment: usize) -> usize {
+        self.pieces.get(segment).map_or(segment, |piece| *piece as usize)
+    }
+
+    /// The segments of a piece of the layer.
+    pub fn segments_of(&self, piece: usize) -> Range<usize> {
+        if self.pieces.is_empty() {
+            return piece..piece + 1;
+        }
+        let before = |end: usize| self.pieces.partition_point(|other| (*other as usize) < end);
+        before(piece)..before(piece + 1)
+    }
+
+    /// How many pieces of the layer the first of its segments are part of.
+    pub fn pieces_of(&self, segments: usize) -> usize {
+        segments.min(self.len()).checked_sub(1).map_or(0, |last| self.piece(last) + 1)
+    }
+
+    fn piece_count(&self) -> usize {
+        self.pieces_of(self.len())
     }
 
     /// When a segment begins and ends, s from the start of the layer.
@@ -285,24 +372,39 @@ impl LayerBeads {
     }
 }
 
+impl PassSpan {
+    /// Adds the way from the layer before: up, which takes `rising` s, and to another body where it leads to one.
+    fn comes_from(&mut self, from: Stance, rising: f64, transfer: Option<&Transfer>) {
+        let legs = transfer.iter().flat_map(|way| &way.legs).map(|leg| Stance { at: leg.place, up: leg.normal });
+        self.travel.splice(0..0, std::iter::once(from).chain(legs));
+        self.travel_start = if transfer.is_some() { 0.0 } else { self.travel_start - rising };
+    }
+}
+
 /// Whether consecutive beads together are nearly one straight bead.
 fn merges(beads: &[Bead]) -> bool {
     let [first, between @ .., last] = beads else { return true };
     let (start, way) = (first.from(), (last.to() - first.from()).normalize_or_zero());
     let near = |bead: &Bead| (bead.from() - start).cross(way).length() < ROUGH * first.width();
     let alike = |bead: &Bead| (bead.width() / first.width() - 1.0).abs() < 0.1 && bead.width < 0.0;
+    let stands = |bead: &Bead| bead.up == first.up || bead.up().dot(first.up()) > ROUGH_COS;
     let ahead = self::way(first).dot(way).min(self::way(last).dot(way)) > ROUGH_COS;
-    way != Vec3::ZERO && ahead && between.iter().chain([last]).all(|bead| near(bead) && alike(bead))
+    let fits = |bead: &Bead| near(bead) && alike(bead) && stands(bead);
+    way != Vec3::ZERO && ahead && between.iter().chain([last]).all(fits)
 }
 
 fn way(bead: &Bead) -> Vec3 {
     (bead.to() - bead.from()).normalize_or_zero()
 }
 
+/// The direction out of the layer between two beads, packed.
+fn between(a: &Bead, b: &Bead) -> u32 {
+    if a.up == b.up { a.up } else { packed((a.up() + b.up()).as_dvec3().normalize_or(DVec3::Z)) }
+}
+
 fn box_of(beads: &[Bead]) -> (Vec3, Vec3) {
     beads.iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(low, high), bead| {
-        let (a, b, reach) = (bead.from(), bead.to(), bead.width() / 2.0);
-        let below = Vec3::new(reach, reach, bead.height());
-        (low.min(a.min(b) - below), high.max(a.max(b) + Vec3::new(reach, reach, 0.0)))
+        let ([a, b], reach) = (bead.middle_line(), bead.reach());
+        (low.min(a.min(b) - reach), high.max(a.max(b) + reach))
     })
 }

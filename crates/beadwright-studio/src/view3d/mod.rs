@@ -6,6 +6,7 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `beads` | one layer as it is drawn and timed |
+//! | `lie` | how it lies in space |
 //! | `scene` | the model and the layers planned so far |
 //! | `scanned` | a scan of the built part |
 //! | `style`, [`palette`] | what is shown and in which colours |
@@ -24,6 +25,7 @@ mod face;
 mod gizmo;
 mod gpu;
 mod headless;
+mod lie;
 mod overlay;
 pub mod palette;
 mod pick;
@@ -38,6 +40,7 @@ pub use camera::{Camera, StandardView};
 pub use face::face;
 pub use gizmo::{Gizmo, Grip, Handle, Moved};
 pub use headless::headless;
+pub use lie::Stance;
 pub use pick::{Pick, pick};
 pub use scanned::Scanned;
 pub use scene::{Position, Scene};

@@ -1,7 +1,7 @@
 //! Which segment is seen at a point of the picture.
 //!
-//! A bead is a tube of elliptical cross-section with round ends. In a space stretched along z until the ellipse is a
-//! circle, it is a capsule, so the hit is exact. Bounding boxes keep the search short: those of layers, from near to
+//! A bead is a tube of elliptical cross-section with round ends. In a space stretched along its height until the ellipse is
+//! a circle, it is a capsule, so the hit is exact. Bounding boxes keep the search short: those of layers, from near to
 //! far until the next one is behind the best hit, and those of blocks of segments within a layer.
 
 use super::beads::{BLOCK, Bead, LayerBeads};
@@ -99,17 +99,17 @@ impl Ray {
     /// Distance at which it enters a bead, mm; `None` if it misses.
     fn hits(&self, bead: &Bead) -> Option<f32> {
         let (width, height) = (bead.width(), bead.height());
-        let stretch = Vec3::new(1.0, 1.0, if height > 0.0 { width / height } else { 1.0 });
+        let (up, more) = (bead.up(), if height > 0.0 { width / height - 1.0 } else { 0.0 });
+        let stretched = |v: Vec3| v + up * (more * up.dot(v));
         // Starts near the bead: with a distant eye, f32 would lose digits.
         let near = (bead.from() - self.origin).dot(self.way);
         let origin = self.origin + self.way * near;
-        let middle = Vec3::new(0.0, 0.0, height / 2.0);
-        let a = (bead.from() - middle - origin) * stretch;
-        let b = (bead.to() - middle - origin) * stretch;
-        let entry = near + enters_capsule(self.way * stretch, a, b, width / 2.0)?;
+        let [a, b] = bead.middle_line().map(|end| stretched(end - origin));
+        let way = stretched(self.way);
+        let entry = near + enters_capsule(way, a, b, width / 2.0)?;
         // Where the near side is cut away, the section shows the inside.
         let first = entry.max(self.kept.0);
-        let inside = || distance_to(self.way * stretch * (first - near), a, b) <= width / 2.0;
+        let inside = || distance_to(way * (first - near), a, b) <= width / 2.0;
         (first <= self.kept.1 && (entry >= self.kept.0 || inside())).then_some(first)
     }
 }

@@ -1,6 +1,7 @@
 //! What can be shown: a model, and the layers planned so far.
 
 use super::beads::{LayerBeads, fresh_id};
+use super::lie::Stance;
 use super::scanned::Scanned;
 use super::style::{Colour, Style};
 use beadwright::model::Mesh;
@@ -42,8 +43,8 @@ pub struct Position {
     pub layer: usize,
     /// The segment being laid or to be laid next, which is also the number of segments of the layer already laid.
     pub segment: usize,
-    /// The torch, mm.
-    pub point: DVec3,
+    /// The torch.
+    pub torch: Stance,
     /// Whether the arc is on.
     pub arc: bool,
 }
@@ -86,7 +87,7 @@ impl Scene {
         self.version = fresh_id();
     }
 
-    /// Sets a value for each segment of an existing layer: the height error, mm; NaN where it is not known.
+    /// Sets a value for each piece of an existing layer: the height error, mm; NaN where it is not known.
     pub fn set_values(&mut self, index: usize, values: Arc<[f32]>) {
         if let Some(place) = self.values.get_mut(index) {
             *place = Some(Values { id: fresh_id(), of: values });
@@ -166,8 +167,8 @@ impl Scene {
         };
         self.mesh.iter().flat_map(|mesh| &mesh.vertices).for_each(|&vertex| add(vertex, 0.0));
         for bead in self.present().flat_map(|(_, layer)| layer.beads()) {
-            add(bead.from().as_dvec3(), f64::from(bead.width()) / 2.0);
-            add(bead.to().as_dvec3(), f64::from(bead.width()) / 2.0);
+            let radius = f64::from(bead.width().max(bead.height())) / 2.0;
+            bead.middle_line().into_iter().for_each(|end| add(end.as_dvec3(), radius));
         }
         let corner = |side: usize| {
             let (a, b) = (side_normal(side), side_normal((side + 1) % SIDES));
@@ -261,7 +262,7 @@ impl Scene {
 fn position(index: usize, layer: &LayerBeads, seconds: f64) -> Option<Position> {
     let number = layer.passes().partition_point(|p| p.end <= seconds).min(layer.passes().len().checked_sub(1)?);
     let pass = layer.passes().get(number)?;
-    let at = |segment: usize, point: DVec3, arc: bool| Some(Position { layer: index, segment, point, arc });
+    let at = |segment: usize, torch: Stance, arc: bool| Some(Position { layer: index, segment, torch, arc });
     if seconds < pass.arrival && !pass.travel.is_empty() {
         let part = (seconds - pass.travel_start) / (pass.arrival - pass.travel_start);
         return at(pass.segments.start, along(&pass.travel, part)?, false);
@@ -271,21 +272,21 @@ fn position(index: usize, layer: &LayerBeads, seconds: f64) -> Option<Position> 
     if segment >= pass.segments.end {
         // The whole pass is laid; the torch waits for crater filling and gas.
         let last = layer.beads().get(pass.segments.end.checked_sub(1)?)?;
-        return at(pass.segments.end, last.to().as_dvec3(), false);
+        return at(pass.segments.end, last.torch(1.0), false);
     }
     let ((begin, end), bead) = (layer.times(segment)?, layer.beads().get(segment)?);
     let part = if end > begin { ((seconds - begin) / (end - begin)).clamp(0.0, 1.0) } else { 1.0 };
-    at(segment, bead.from().as_dvec3().lerp(bead.to().as_dvec3(), part), seconds >= pass.arc_start)
+    at(segment, bead.torch(part), seconds >= pass.arc_start)
 }
 
-/// The point at a fraction (0 to 1) of the length of a polyline.
-fn along(points: &[DVec3], part: f64) -> Option<DVec3> {
-    let length: f64 = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+/// The torch at a fraction (0 to 1) of the length of a polyline.
+fn along(points: &[Stance], part: f64) -> Option<Stance> {
+    let length: f64 = points.windows(2).map(|w| w[0].at.distance(w[1].at)).sum();
     let mut left = length * part.clamp(0.0, 1.0);
     for leg in points.windows(2) {
-        let here = leg[0].distance(leg[1]);
+        let here = leg[0].at.distance(leg[1].at);
         if left <= here && here > 0.0 {
-            return Some(leg[0].lerp(leg[1], left / here));
+            return Some(leg[0].towards(leg[1], left / here));
         }
         left -= here;
     }

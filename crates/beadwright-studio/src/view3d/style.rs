@@ -1,9 +1,10 @@
 //! Which parts of the scene are shown, and in which colours.
 
+use super::lie::Stance;
 use super::pick::Pick;
 use super::section::Section;
 use beadwright::robot::body::Capsule;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use std::ops::RangeInclusive;
 
 /// What the colour of a bead means.
@@ -64,8 +65,8 @@ pub struct Style {
     pub plate: Option<Plate>,
     /// The links of the robot's arm; in the part's space.
     pub arm: Vec<Capsule>,
-    /// Where the torch is drawn, mm.
-    pub torch: Option<DVec3>,
+    /// Where the torch is drawn.
+    pub torch: Option<Stance>,
     /// The highlighted pass, and a segment in it.
     pub highlight: Option<Pick>,
     /// Whether the theme is dark.

@@ -6,6 +6,7 @@ use beadwright::robot::body::Solid;
 use beadwright::robot::{self, Cell};
 use beadwright::task::Task;
 use beadwright_studio::arm::{Place, stand};
+use beadwright_studio::view3d::Stance;
 use glam::DVec3;
 
 #[test]
@@ -24,7 +25,8 @@ fn the_wire_tip_of_every_arm_is_at_the_bead() {
             for (pass, of) in layer.passes.iter().enumerate() {
                 for segment in of.segments().step_by(7) {
                     let at = (segment.from + segment.to) / 2.0;
-                    let Some(found) = stand(&cell, &reach, &Place { layer: layer.index, pass, at }) else { continue };
+                    let place = Place { layer: layer.index, pass, torch: Stance::upright(at) };
+                    let Some(found) = stand(&cell, &reach, &place) else { continue };
                     stood += 1;
                     // Forward kinematics, along the torch to the wire's tip.
                     let flange = arm.forward(&found.joints);
@@ -49,5 +51,5 @@ fn nothing_stands_where_there_is_no_pass() {
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     let cell = Cell::built_in("kuka-kr20-r1810").unwrap();
     let reach = robot::reach(&cell, cell.part, &profile.track::<beadwright::layer::Layer>(&[]));
-    assert_eq!(stand(&cell, &reach, &Place { layer: 0, pass: 0, at: DVec3::ZERO }), None);
+    assert_eq!(stand(&cell, &reach, &Place { layer: 0, pass: 0, torch: Stance::upright(DVec3::ZERO) }), None);
 }

@@ -11,6 +11,7 @@ mod project;
 mod section;
 #[path = "../../../beadwright/tests/it/sight/mod.rs"]
 mod sight;
+mod space;
 mod studio;
 mod texts;
 mod ui;

@@ -18,7 +18,11 @@ const SIZE: DVec2 = DVec2::new(800.0, 400.0);
 fn planned(name: &str) -> Scene {
     let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     profile.fill.strategy = StrategyName::Hybrid;
-    let import = model::import(&example::find(name).unwrap().stl(), &Task::default()).unwrap();
+    let example = example::find(name).unwrap();
+    if let Some(chart) = example.chart {
+        profile.layers.chart = chart.parse().unwrap();
+    }
+    let import = model::import(&example.stl(), &Task::default()).unwrap();
     let mut mesh = import.mesh;
     mesh.place(1.0, DVec3::ZERO);
     let plan = beadwright::plan::plan(name, &mesh, &profile, &Task::default()).unwrap();
@@ -32,11 +36,11 @@ fn planned(name: &str) -> Scene {
 }
 
 /// How far a point is from the middle of a bead, an ellipse along a line with round ends: 1 on its surface.
-fn from_middle(bead: &Bead, at: DVec3) -> f64 {
-    let (width, height) = (f64::from(bead.width()), f64::from(bead.height()));
-    let stretch = DVec3::new(2.0 / width, 2.0 / width, 2.0 / height);
-    let middle = DVec3::new(0.0, 0.0, height / 2.0);
-    let [a, b, p] = [bead.from().as_dvec3() - middle, bead.to().as_dvec3() - middle, at].map(|v| v * stretch);
+pub(crate) fn from_middle(bead: &Bead, at: DVec3) -> f64 {
+    let (width, height, up) = (f64::from(bead.width()), f64::from(bead.height()), bead.up().as_dvec3());
+    let stretched = |v: DVec3| (v.reject_from(up) / width + v.project_onto(up) / height) * 2.0;
+    let middle = up * (height / 2.0);
+    let [a, b, p] = [bead.from().as_dvec3() - middle, bead.to().as_dvec3() - middle, at].map(stretched);
     let part = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
     p.distance(a.lerp(b, part))
 }
@@ -78,7 +82,14 @@ fn places(scene: &Scene, section: &Section, count: u64) -> Vec<DVec3> {
 }
 
 /// The sections looked at: from the side that is cut away.
-const SECTIONS: [Section; 2] = [Section { axis: 1, at: 3.1, lower: true }, Section { axis: 0, at: -7.3, lower: false }];
+const SECTIONS: [Section; 3] = [
+    Section { axis: 1, at: 3.1, lower: true },
+    Section { axis: 0, at: -7.3, lower: false },
+    Section { axis: 1, at: -6.2, lower: true },
+];
+
+/// What they cut: the last one has layers around an axis.
+const PARTS: [&str; 3] = ["cross", "gear", "shaft"];
 
 #[test]
 fn the_section_shows_the_inside_of_beads_where_they_are() {
@@ -86,14 +97,14 @@ fn the_section_shows_the_inside_of_beads_where_they_are() {
         println!("pictures are skipped: there is nothing to draw with");
         return;
     };
-    for (name, section) in ["cross", "gear"].into_iter().zip(SECTIONS) {
+    for (name, section) in PARTS.into_iter().zip(SECTIONS) {
         let scene = planned(name);
         let mut view = View3d::default();
         view.camera = squarely(&scene, section.axis);
         let style = Style { mesh: false, section: Some(section), ..Style::default() };
         let (width, _, pixels) = view.picture(&state, &scene, &style, PIXELS).unwrap();
         let (mut inside, mut outside, mut mixed, mut alike) = (0, 0, 0, 0);
-        for at in places(&scene, &section, 600) {
+        for at in places(&scene, &section, 1500) {
             let seen = view.camera.project(at, SIZE).unwrap();
             let first = 4 * (seen.y as usize * width as usize + seen.x as usize);
             let found: Vec<f64> = pixels[first..first + 3].iter().map(|c| f64::from(*c)).collect();
@@ -118,12 +129,12 @@ fn the_section_shows_the_inside_of_beads_where_they_are() {
 
 #[test]
 fn a_click_on_the_section_picks_the_bead_that_is_cut_there() {
-    for (name, section) in ["cross", "gear"].into_iter().zip(SECTIONS) {
+    for (name, section) in PARTS.into_iter().zip(SECTIONS) {
         let scene = planned(name);
         let camera = squarely(&scene, section.axis);
         let style = Style { section: Some(section), ..Style::default() };
         let mut picked = 0;
-        for at in places(&scene, &section, 600) {
+        for at in places(&scene, &section, 1500) {
             let found = pick(&scene, &style, &camera, SIZE, camera.project(at, SIZE).unwrap());
             if deepest(&scene, at).0 < 0.98 {
                 let found = found.unwrap();

@@ -95,13 +95,13 @@ fn the_torch_goes_on_without_leaps() {
     let positions: Vec<_> = (0..=steps).map(|i| scene.at_time(seconds * i as f64 / steps as f64).unwrap()).collect();
     let fastest = profile().travel.speed.max(profile().process.deposition_speed * 2.0);
     for pair in positions.windows(2) {
-        let leap = pair[0].point.distance(pair[1].point);
+        let leap = pair[0].torch.at.distance(pair[1].torch.at);
         assert!(leap <= fastest * seconds / steps as f64 + 0.01, "{leap} mm at {:?}", pair[0]);
         assert!((pair[0].layer, pair[0].segment) <= (pair[1].layer, pair[1].segment));
     }
-    assert!(positions[0].point.distance(plan.layers[0].passes[0].start().unwrap()) < 1e-3);
+    assert!(positions[0].torch.at.distance(plan.layers[0].passes[0].start().unwrap()) < 1e-3);
     let end = plan.layers.last().unwrap().passes.last().unwrap().end().unwrap();
-    assert!(positions[steps].point.distance(end) < 1e-3);
+    assert!(positions[steps].torch.at.distance(end) < 1e-3);
     assert_eq!(positions[steps].segment, scene.layers().last().unwrap().as_ref().unwrap().len());
     assert_eq!(Scene::default().at_time(3.0), None);
 }
@@ -349,7 +349,7 @@ fn pictures() {
         mesh: true,
         layers: 0..=torch.layer,
         segments_of_last: Some(torch.segment),
-        torch: Some(torch.point),
+        torch: Some(torch.torch),
         ..plain.clone()
     };
     shoot(&mut view, &scene, "g-playing.png", Iso, 1.0, playing.clone());

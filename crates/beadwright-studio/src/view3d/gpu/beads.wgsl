@@ -29,6 +29,18 @@ fn way(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     return select(vec3(1.0, 0.0, 0.0), d / l, l > 1e-6);
 }
 
+// Three directions square to each other, the third one given (Duff et al. 2017); those of the axes for z.
+fn frame(up: vec3<f32>) -> mat3x3<f32> {
+    let side = select(-1.0, 1.0, up.z >= 0.0);
+    let a = -1.0 / (side + up.z);
+    let b = up.x * up.y * a;
+    return mat3x3(
+        vec3(1.0 + side * up.x * up.x * a, side * b, -side * up.x),
+        vec3(b, side + up.y * up.y * a, -up.y),
+        up,
+    );
+}
+
 // Fades the shading of beads that are too fine to be seen as round, which would only flicker.
 fn roundness(half_width: f32, pixel: f32) -> f32 {
     return smoothstep(0.4, 2.0, half_width / pixel);
@@ -42,6 +54,9 @@ fn ribbon(
     @location(2) before: vec3<f32>,
     @location(3) after: vec3<f32>,
     @location(4) value: f32,
+    @location(5) up_here: u32,
+    @location(6) up_before: u32,
+    @location(7) up_after: u32,
 ) -> BeadVertex {
     let at_end = (vertex & 1u) == 1u;
     let across = f32(vertex >> 1u) * globals.values.z - 1.0;
@@ -50,18 +65,25 @@ fn ribbon(
 
     // Both segments of a mitred joint find the same cross-section: the one halfway between them.
     var other = along;
+    var up_other = up_here;
     if at_end && to_height.w < 0.0 {
         other = way(top, after);
+        up_other = up_after;
     } else if !at_end && from_width.w < 0.0 {
         other = way(before, top);
+        up_other = up_before;
+    }
+    var up = vec3(0.0, 0.0, 1.0);
+    if (up_here | up_other) != 0u {
+        up = normalize(turned_up(up_here) + turned_up(up_other));
     }
     let axis = normalize(along + other);
     var half_width = abs(from_width.w) * 0.5 / dot(axis, along);
     var half_height = abs(to_height.w) * 0.5 * globals.ground.w;
-    let centre = top - vec3(0.0, 0.0, half_height);
+    let centre = top - up * half_height;
 
-    let level = vec2(-axis.y, axis.x);
-    let n = select(vec3(1.0, 0.0, 0.0), vec3(level / length(level), 0.0), dot(level, level) > 1e-8);
+    let level = cross(up, axis);
+    let n = select(vec3(1.0, 0.0, 0.0), level / length(level), dot(level, level) > 1e-8);
     let z = cross(axis, n);
     let viewer = to_viewer(centre);
     let s = cross(axis, viewer);
@@ -104,11 +126,14 @@ fn cap(
     @location(0) top: vec3<f32>,
     @location(1) size: vec2<f32>,
     @location(2) value: f32,
+    @location(3) up: u32,
 ) -> BeadVertex {
     // The vertices of a fan: the lower byte is the angle in steps of 1.5°, the next one the ring.
     var half = vec3(size.x, size.x, size.y) * 0.5;
-    let centre = top - vec3(0.0, 0.0, half.z);
-    let viewer = to_viewer(centre);
+    // From where the layer is level to where it lies.
+    let turn = frame(turned_up(up));
+    let centre = top - turn[2] * half.z;
+    let viewer = to_viewer(centre) * turn;
     let front = normalize(viewer / half);
     let helper = select(vec3(0.0, 0.0, 1.0), vec3(0.0, 1.0, 0.0), abs(front.z) > 0.9);
     let i = normalize(cross(helper, front));
@@ -126,12 +151,12 @@ fn cap(
     let shape = vec3(flat_width, flat_width, half.z) / half.z;
     let round = roundness(reach, pixel);
     var out: BeadVertex;
-    out.clip = globals.clip_from_world * vec4(centre + half * spot, 1.0);
+    out.at = centre + turn * (half * spot);
+    out.clip = globals.clip_from_world * vec4(out.at, 1.0);
     out.colour = bead_colour(value);
     out.place = place * round;
-    out.side = rim / shape * round;
-    out.front = front / shape;
-    out.at = centre + half * spot;
+    out.side = turn * (rim / shape * round);
+    out.front = turn * (front / shape);
     return out;
 }
 

@@ -30,6 +30,15 @@ pub(super) struct Point {
     pub role: u32,
 }
 
+/// A dot where a pass starts or ends, and the direction out of its layer there, packed.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Dot {
+    pub at: [f32; 3],
+    pub role: u32,
+    pub up: u32,
+}
+
 /// Numbers of beads, caps, travel vertices and dots in a chunk up to the end of some layer.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Counts {
@@ -140,7 +149,7 @@ impl Chunk {
         let begin = self.ends();
         let segments = layers.iter().map(|(_, layer)| layer.len()).sum::<usize>();
         let mut beads: Vec<Bead> = Vec::with_capacity(segments + 1);
-        let (mut caps, mut travels, mut dots): (Vec<Cap>, Vec<Point>, Vec<Point>) = Default::default();
+        let (mut caps, mut travels, mut dots): (Vec<Cap>, Vec<Point>, Vec<Dot>) = Default::default();
         // A bead that is not drawn goes before the first one.
         let pad = usize::from(begin.beads == 0);
         beads.resize(pad, Bead::zeroed());
@@ -252,7 +261,7 @@ fn partly(begin: Counts, layer: &LayerBeads, segments: usize) -> Counts {
 }
 
 /// Travels as lines, and starts and ends of passes as dots.
-fn marks(layer: &LayerBeads, travels: &mut Vec<Point>, dots: &mut Vec<Point>) {
+fn marks(layer: &LayerBeads, travels: &mut Vec<Point>, dots: &mut Vec<Dot>) {
     for pass in layer.passes() {
         let (Some(first), Some(last)) =
             (layer.beads.get(pass.segments.start), layer.beads[pass.segments.clone()].last())
@@ -260,9 +269,9 @@ fn marks(layer: &LayerBeads, travels: &mut Vec<Point>, dots: &mut Vec<Point>) {
             continue;
         };
         for leg in pass.travel.windows(2).flatten() {
-            travels.push(Point { at: leg.as_vec3().into(), role: role::TRAVEL });
+            travels.push(Point { at: leg.at.as_vec3().into(), role: role::TRAVEL });
         }
-        dots.push(Point { at: first.from().into(), role: role::START });
-        dots.push(Point { at: last.to().into(), role: role::END });
+        dots.push(Dot { at: first.from().into(), role: role::START, up: first.up });
+        dots.push(Dot { at: last.to().into(), role: role::END, up: last.up });
     }
 }

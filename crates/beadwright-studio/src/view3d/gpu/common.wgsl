@@ -39,6 +39,14 @@ fn is_cut(at: vec3<f32>) -> bool {
     return dot(globals.section.xyz, at) > globals.section.w;
 }
 
+// The direction out of a layer, unpacked (`packed` in lie.rs).
+fn turned_up(up: u32) -> vec3<f32> {
+    let flat = unpack2x16snorm(up);
+    let z = 1.0 - abs(flat.x) - abs(flat.y);
+    let back = max(-z, 0.0);
+    return normalize(vec3(flat + select(vec2(back), vec2(-back), flat >= vec2(0.0)), z));
+}
+
 // Size of a pixel at a point, mm.
 fn pixel_at(at: vec3<f32>) -> f32 {
     return globals.screen.z * select(1.0, distance(globals.eye.xyz, at), globals.eye.w > 0.5);

@@ -81,7 +81,7 @@ impl Shot<'_> {
         let Some(beads) = scene.layer(layer) else { return };
         let Some(span) = beads.passes().get(number) else { return };
         let shown = style.shown(layer, beads.len());
-        for (look, segments) in [(1, span.segments.clone()), (2, segment..segment + 1)] {
+        for (look, segments) in [(1, span.segments.clone()), (2, beads.segments_of(beads.piece(segment)))] {
             let segments = segments.start.min(shown)..segments.end.min(shown);
             pass.set_bind_group(0, &gpu.bindings[look], &[]);
             for chunk in &gpu.chunks {

@@ -7,6 +7,8 @@ struct FaceVertex {
     // The two ends of the centre line, with half the width and half the height.
     @location(2) @interpolate(flat) end_a: vec4<f32>,
     @location(3) @interpolate(flat) end_b: vec4<f32>,
+    // The direction out of its layer.
+    @location(4) @interpolate(flat) up: vec3<f32>,
 }
 
 @vertex
@@ -15,12 +17,16 @@ fn face(
     @location(0) from_width: vec4<f32>,
     @location(1) to_height: vec4<f32>,
     @location(4) value: f32,
+    @location(5) packed_up: u32,
 ) -> FaceVertex {
     let half = vec2(abs(from_width.w), abs(to_height.w) * globals.ground.w) * 0.5;
-    let a = from_width.xyz - vec3(0.0, 0.0, half.y);
-    let b = to_height.xyz - vec3(0.0, 0.0, half.y);
+    let up = turned_up(packed_up);
+    let a = from_width.xyz - up * half.y;
+    let b = to_height.xyz - up * half.y;
+    // How far the bead reaches from its centre line, along the axes and along the normal of the plane.
+    let room = sqrt(mix(vec3(half.x * half.x), vec3(half.y * half.y), up * up));
     let normal = globals.section.xyz;
-    let reach = select(half.x, half.y, abs(normal.z) > 0.5);
+    let reach = dot(room, abs(normal));
 
     // The stretch of the centre line that is near enough to the plane.
     let begin = dot(normal, a) - globals.section.w;
@@ -33,7 +39,6 @@ fn face(
     let missed = select(stretch.x >= stretch.y, abs(begin) > reach, abs(run) <= 1e-6);
     let p = mix(a, b, stretch.x);
     let q = mix(a, b, stretch.y);
-    let room = half.xxy;
 
     let place = vec2(f32(vertex & 1u), f32(vertex >> 1u));
     let upright = select(vec3(0.0, place), vec3(place.x, 0.0, place.y), abs(normal.y) > 0.5);
@@ -45,15 +50,18 @@ fn face(
     out.colour = bead_colour(value);
     out.end_a = vec4(a, half.x);
     out.end_b = vec4(b, half.y);
+    out.up = up;
     return out;
 }
 
 // How far a point is from the centre line: 1 on the surface.
 fn from_centre(in: FaceVertex) -> f32 {
-    // Stretched so that the ellipse is a circle.
-    let stretch = vec3(1.0, 1.0, in.end_a.w / in.end_b.w);
-    let way = (in.end_b.xyz - in.end_a.xyz) * stretch;
-    let off = (in.at - in.end_a.xyz) * stretch;
+    // Stretched along the height so that the ellipse is a circle.
+    let more = in.end_a.w / in.end_b.w - 1.0;
+    var way = in.end_b.xyz - in.end_a.xyz;
+    way += in.up * (more * dot(way, in.up));
+    var off = in.at - in.end_a.xyz;
+    off += in.up * (more * dot(off, in.up));
     let part = clamp(dot(off, way) / max(dot(way, way), 1e-12), 0.0, 1.0);
     return length(off - way * part) / in.end_a.w;
 }

@@ -39,11 +39,13 @@ fn dot_mark(
     @builtin(vertex_index) vertex: u32,
     @location(0) at: vec3<f32>,
     @location(1) role: u32,
+    @location(2) packed_up: u32,
 ) -> MarkVertex {
     const RADIUS: f32 = 6.5;
     let place = vec2(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0;
     let viewer = to_viewer(at);
-    let normal = normalize(mix(viewer, vec3(0.0, 0.0, 1.0), smoothstep(0.0, 0.4, viewer.z)));
+    let up = turned_up(packed_up);
+    let normal = normalize(mix(viewer, up, smoothstep(0.0, 0.4, dot(viewer, up))));
     let helper = select(vec3(0.0, 0.0, 1.0), vec3(0.0, 1.0, 0.0), abs(normal.z) > 0.9);
     let i = normalize(cross(helper, normal));
     let offset = (i * place.x + cross(normal, i) * place.y) * (RADIUS * pixel_at(at));

@@ -1,6 +1,6 @@
 //! How each kind of thing is drawn.
 
-use super::chunks::Point;
+use super::chunks::{Dot, Point};
 use super::target::{COLOUR, DEPTH};
 use crate::view3d::beads::{Bead, Cap};
 use eframe::egui_wgpu::wgpu::{self, VertexFormat, VertexStepMode};
@@ -66,8 +66,8 @@ impl Pipelines {
         let (scan, scan_point) =
             ([buffer(16, VertexStepMode::Vertex, &SCAN)], [buffer(16, VertexStepMode::Instance, &SCAN)]);
         let (line, dot, plain) = (
-            [points(&POINT, VertexStepMode::Vertex)],
-            [points(&POINT, VertexStepMode::Instance)],
+            [buffer(size_of::<Point>(), VertexStepMode::Vertex, &POINT)],
+            [buffer(size_of::<Dot>(), VertexStepMode::Instance, &DOT)],
             [buffer(12, VertexStepMode::Vertex, &PLAIN)],
         );
         // Only what is cut pays for it: its fragments cannot be skipped before they are shaded.
@@ -102,13 +102,26 @@ const PLAIN: [wgpu::VertexAttribute; 1] = [attribute(VertexFormat::Float32x3, 0,
 const SCAN: [wgpu::VertexAttribute; 1] = [attribute(VertexFormat::Float32x4, 0, 0)];
 const POINT: [wgpu::VertexAttribute; 2] =
     [attribute(VertexFormat::Float32x3, 0, 0), attribute(VertexFormat::Uint32, 12, 1)];
-const BEAD: [wgpu::VertexAttribute; 2] =
-    [attribute(VertexFormat::Float32x4, 0, 0), attribute(VertexFormat::Float32x4, 16, 1)];
-const BEFORE: [wgpu::VertexAttribute; 1] = [attribute(VertexFormat::Float32x3, 0, 2)];
-const AFTER: [wgpu::VertexAttribute; 1] = [attribute(VertexFormat::Float32x3, 16, 3)];
+const DOT: [wgpu::VertexAttribute; 3] = [
+    attribute(VertexFormat::Float32x3, 0, 0),
+    attribute(VertexFormat::Uint32, 12, 1),
+    attribute(VertexFormat::Uint32, 16, 2),
+];
+const BEAD: [wgpu::VertexAttribute; 3] = [
+    attribute(VertexFormat::Float32x4, 0, 0),
+    attribute(VertexFormat::Float32x4, 16, 1),
+    attribute(VertexFormat::Uint32, 32, 5),
+];
+const BEFORE: [wgpu::VertexAttribute; 2] =
+    [attribute(VertexFormat::Float32x3, 0, 2), attribute(VertexFormat::Uint32, 32, 6)];
+const AFTER: [wgpu::VertexAttribute; 2] =
+    [attribute(VertexFormat::Float32x3, 16, 3), attribute(VertexFormat::Uint32, 32, 7)];
 const BEAD_VALUE: [wgpu::VertexAttribute; 1] = [attribute(VertexFormat::Float32, 0, 4)];
-const CAP: [wgpu::VertexAttribute; 2] =
-    [attribute(VertexFormat::Float32x3, 0, 0), attribute(VertexFormat::Float32x2, 12, 1)];
+const CAP: [wgpu::VertexAttribute; 3] = [
+    attribute(VertexFormat::Float32x3, 0, 0),
+    attribute(VertexFormat::Float32x2, 12, 1),
+    attribute(VertexFormat::Uint32, 20, 3),
+];
 const CAP_VALUE: [wgpu::VertexAttribute; 1] = [attribute(VertexFormat::Float32, 0, 2)];
 
 /// The same buffer of beads bound three times: the bead being drawn, the one before it and the one after it.
@@ -120,10 +133,6 @@ fn ribbon_buffers() -> [Layout<'static>; 4] {
 fn cap_buffers() -> [Layout<'static>; 2] {
     let cap = buffer(size_of::<Cap>(), VertexStepMode::Instance, &CAP);
     [cap, buffer(4, VertexStepMode::Instance, &CAP_VALUE)]
-}
-
-fn points(attributes: &[wgpu::VertexAttribute], step_mode: VertexStepMode) -> Layout<'_> {
-    buffer(size_of::<Point>(), step_mode, attributes)
 }
 
 fn buffer(stride: usize, step_mode: VertexStepMode, attributes: &[wgpu::VertexAttribute]) -> Layout<'_> {

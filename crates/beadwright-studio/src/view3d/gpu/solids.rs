@@ -2,6 +2,7 @@
 
 use super::chunks::Point;
 use super::globals::role;
+use crate::view3d::lie::Stance;
 use crate::view3d::style::{Plate, Style};
 use glam::{DVec3, Vec3};
 
@@ -18,7 +19,7 @@ const BELOW: f32 = 0.05;
 pub(super) fn solids(style: &Style) -> Vec<Point> {
     let mut points = Vec::new();
     style.plate.iter().for_each(|place| plate(&mut points, place));
-    style.torch.iter().for_each(|tip| torch(&mut points, *tip));
+    style.torch.iter().for_each(|stance| torch(&mut points, stance));
     for link in &style.arm {
         capsule(&mut points, link.ends, link.radius);
     }
@@ -36,8 +37,8 @@ fn plate(points: &mut Vec<Point>, Plate { low, high, thickness }: &Plate) {
     }
 }
 
-/// A torch pointing down with its tip at a given place, mm.
-fn torch(points: &mut Vec<Point>, tip: DVec3) {
+/// A torch with its tip at a given place.
+fn torch(points: &mut Vec<Point>, stance: &Stance) {
     /// Height above the tip and radius, mm: the wire, the gas nozzle, the neck.
     const PROFILE: [(f32, f32, u32); 6] = [
         (0.0, 0.6, role::NOZZLE),
@@ -47,7 +48,7 @@ fn torch(points: &mut Vec<Point>, tip: DVec3) {
         (75.0, 9.5, role::TORCH),
         (75.0, 0.0, role::TORCH),
     ];
-    revolved(points, tip.as_vec3(), Vec3::Z, &PROFILE);
+    revolved(points, stance.at.as_vec3(), stance.up.as_vec3(), &PROFILE);
 }
 
 /// A line with a thickness and round ends.

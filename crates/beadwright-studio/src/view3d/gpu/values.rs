@@ -85,7 +85,7 @@ fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: 
         Colour::Order => out.extend((0..layer.len()).map(|i| (key.segments_before + i) as f32)),
         Colour::Time => out.extend(layer.ends.iter().map(|&end| (key.seconds_before + f64::from(end)) as f32)),
         Colour::HeightError => out.extend((0..layer.len()).map(|i| {
-            let value = supplied.and_then(|values| values.get(i)).copied().unwrap_or(MISSING);
+            let value = supplied.and_then(|values| values.get(layer.piece(i))).copied().unwrap_or(MISSING);
             if value.is_finite() { value } else { MISSING }
         })),
         Colour::Temperature => {

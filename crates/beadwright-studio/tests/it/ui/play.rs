@@ -42,7 +42,7 @@ fn the_torch_runs_to_the_end_in_the_time_of_the_metrics() {
     let view = harness.state_mut().view().clone();
     assert!((view.seconds - seconds).abs() < 1e-3 * seconds, "{} s, not {seconds} s", view.seconds);
     assert_eq!((view.last, view.progress), (layers - 1, 1.0));
-    assert!(view.torch.unwrap().distance(end) < 1e-3);
+    assert!(view.torch.unwrap().at.distance(end) < 1e-3);
     assert!((35..=45).contains(&frames), "{frames} frames");
 }
 
