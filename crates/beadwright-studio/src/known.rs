@@ -17,6 +17,7 @@ use crate::view::{Mode, ViewState};
 use crate::view2d::View2d;
 use crate::view3d::{Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
+use beadwright::chart::Chart;
 use beadwright::fill::StrategyName;
 use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context};
@@ -180,8 +181,9 @@ impl<'a> Known<'a> {
     pub(crate) fn plate(self) -> Option<Plate> {
         let profile = self.plans.own.profile.as_ref()?;
         let plate = profile.substrate.as_ref()?;
-        let ground = profile.layers.charts().next().map(|chart| chart.sheet(0.0).at(DVec3::ZERO).normal);
-        if ground.is_none_or(|up| !up.abs_diff_eq(DVec3::Z, 1e-6)) {
+        let first = profile.layers.charts().next()?;
+        let is_flat = matches!(first, Chart::Plane(_) | Chart::Guide(_));
+        if !is_flat || !first.sheet(0.0).at(DVec3::ZERO).normal.abs_diff_eq(DVec3::Z, 1e-6) {
             return None;
         }
         let (low, high) = self.plans.own.part.as_ref()?.bounds();

@@ -240,7 +240,7 @@ impl LayerBeads {
         for at in lie.divided(piece.from, piece.to) {
             let (middle, end) = (before.midpoint(at), lie.stance(at));
             let (from, to) = (start.at.as_vec3().into(), end.at.as_vec3().into());
-            let height = (height * lie.rise(middle)) as f32;
+            let height = lie.thickness(middle, height) as f32;
             self.beads.push(Bead { from, width, to, height, up: packed(lie.stance(middle).up) });
             (before, start) = (at, end);
         }

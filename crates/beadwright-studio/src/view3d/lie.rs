@@ -43,9 +43,13 @@ impl Lie<'_> {
         self.0.map(on_sheet).map_or(Stance::upright(p), |at| Stance { at: at.place, up: at.normal })
     }
 
-    /// How thick a millimetre of the layer's height is at a place.
-    pub(super) fn rise(&self, p: DVec3) -> f64 {
-        self.0.map_or(1.0, |sheet| sheet.rise(p.truncate()).max(0.0))
+    /// How far it is to what lies `height` (mm) below a point of the layer, along the direction out of it, mm.
+    pub(super) fn thickness(&self, p: DVec3, height: f64) -> f64 {
+        if self.is_level() {
+            return height;
+        }
+        let (top, below) = (self.stance(p), self.stance(p.with_z(p.z - height)));
+        (top.at - below.at).dot(top.up).max(0.0)
     }
 
     /// Points from one to another, without the first, so close together that straight pieces between them follow the layer.

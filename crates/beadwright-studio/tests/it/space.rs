@@ -6,7 +6,7 @@ use beadwright::profile::{Body, Profile};
 use beadwright::task::Task;
 use beadwright::weld::Torch;
 use beadwright::{example, glam::DVec2, glam::DVec3};
-use beadwright_studio::view3d::{Camera, LayerBeads, Pick, Scene, StandardView, Style, View3d, headless, pick};
+use beadwright_studio::view3d::{Camera, LayerBeads, Pick, Scene, Style, View3d, headless, pick};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -102,6 +102,24 @@ fn beads_of_a_bend_are_as_thick_as_it_makes_them() {
 }
 
 #[test]
+fn beads_of_a_dome_stand_out_of_it() {
+    let (plan, profile, scene) = planned("dome");
+    let steepest = plan.layers.iter().zip(scene.layers().iter().flatten()).map(|(layer, beads)| {
+        let sheet = profile.layers.sheet(layer).unwrap();
+        let leans = beads.beads().iter().map(|bead| {
+            let up = sheet.at(sheet.coordinates(bead.torch(0.5).at, DVec2::ZERO)).normal;
+            assert!(bead.up().as_dvec3().distance(up) < 0.01);
+            // Layers over a surface are as thick as planned along its z.
+            assert!((bead.height() / layer.height as f32 - bead.up().z).abs() < 0.01);
+            bead.up().z
+        });
+        leans.fold(1.0, f32::min)
+    });
+    let steepest = steepest.fold(1.0, f32::min);
+    assert!((0.9..0.99).contains(&steepest), "{steepest}");
+}
+
+#[test]
 fn the_clock_agrees_with_the_metrics_in_space() {
     for name in ["shaft", "y-tube"] {
         let (plan, profile, scene) = planned(name);
@@ -130,9 +148,9 @@ fn the_torch_goes_on_without_leaps_from_body_to_body() {
     }
 }
 
-/// Points on the tops of beads that nothing hides from a camera, with their layer and segment.
+/// Points on the tops of beads that nothing hides from a camera, with their layer and segment; those of the last layers first.
 fn seen<'a>(scene: &'a Scene, camera: &'a Camera) -> impl Iterator<Item = (usize, usize, DVec3)> + 'a {
-    let layers = scene.layers().iter().enumerate().filter_map(|(i, layer)| Some((i, layer.as_ref()?)));
+    let layers = scene.layers().iter().enumerate().rev().filter_map(|(i, layer)| Some((i, layer.as_ref()?)));
     let tops = layers.flat_map(|(i, layer)| layer.beads().iter().enumerate().map(move |(k, bead)| (i, k, bead)));
     tops.step_by(2).filter(|(.., bead)| bead.up().as_dvec3().dot(camera.back()) > 0.99).filter_map(|(i, k, bead)| {
         let top = bead.torch(0.5).at;
@@ -154,11 +172,13 @@ fn a_click_finds_the_bead_that_is_seen_in_space() {
         let (_, _, scene) = planned(name);
         let style = Style::default();
         let (mut tried, mut direct) = (0, 0);
-        for view in [StandardView::Front, StandardView::Right, StandardView::Top] {
-            let mut camera = Camera { orthographic: true, ..Camera::default() };
-            camera.set_view(view);
+        let last = scene.layers().iter().flatten().rfind(|layer| !layer.is_empty()).unwrap().beads();
+        for up in [0, last.len() / 3, 2 * last.len() / 3].map(|i| last[i].up().as_dvec3()) {
+            // Looks straight at the layer.
+            let (yaw, pitch) = (up.y.atan2(up.x), up.z.asin());
+            let mut camera = Camera { orthographic: true, yaw, pitch, ..Camera::default() };
             camera.fit(scene.bounds().unwrap(), SIZE);
-            for (layer, segment, top) in seen(&scene, &camera).take(60) {
+            for (layer, segment, top) in seen(&scene, &camera).take(30) {
                 let found = pick(&scene, &style, &camera, SIZE, camera.project(top, SIZE).unwrap());
                 let Pick { layer: of, segment: hit, .. } = found.unwrap();
                 let bead = &scene.layer(of).unwrap().beads()[hit];
@@ -178,7 +198,7 @@ fn a_click_finds_the_bead_that_is_seen_in_space() {
 #[ignore = "for looking"]
 fn pictures() {
     let Ok(state) = headless() else { return };
-    for name in ["shaft", "hub", "elbow", "y-tube"] {
+    for name in ["shaft", "hub", "elbow", "y-tube", "dome"] {
         let (_, _, scene) = planned(name);
         let end = scene.at_time(scene.total_seconds() * 0.8).unwrap();
         let plain = Style { mesh: false, ..Style::default() };

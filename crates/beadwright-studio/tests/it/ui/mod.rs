@@ -16,5 +16,6 @@ mod placement;
 mod play;
 mod preform;
 mod scan;
+mod space;
 mod start;
 mod words;
