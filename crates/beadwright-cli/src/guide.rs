@@ -79,7 +79,12 @@ fn rounded(points: &[DVec3]) -> anyhow::Result<Guide> {
 fn iges(path: &Path) -> anyhow::Result<Option<Vec<DVec3>>> {
     let Some(drawing) = model::read_iges(path, &file::model(path)?)? else { return Ok(None) };
     let curves: Vec<_> = drawing.independent_curves().collect();
-    ensure!(curves.len() == 1, "{}: it holds {} curves, but a guide is a single one: join them in CAD", path.display(), curves.len());
+    ensure!(
+        curves.len() == 1,
+        "{}: it holds {} curves, but a guide is a single one: join them in CAD",
+        path.display(),
+        curves.len()
+    );
     Ok(Some(curves.iter().flat_map(|curve| &curve.parts).flat_map(|part| part.points_by_chord(CHORD)).collect()))
 }
 

@@ -35,7 +35,7 @@ fn figures(known: Known<'_>, view: &View<'_>) -> Option<Vec<String>> {
     let (plan, scene) = (&known.plans.own, &known.plans.own.scene);
     let beads = scene.layer(layer)?;
     let found = plan.layer(layer)?.passes.get(pass)?;
-    let segment = studio.pick((layer, pass, piece))?.segment;
+    let segment = known.pick((layer, pass, piece))?.segment;
     let seconds = scene.seconds_before(layer) + beads.times(segment)?.0;
     let mut figures = vec![
         format!("{} {}", known.t("layer"), layer + 1),
