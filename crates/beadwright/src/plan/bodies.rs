@@ -37,7 +37,10 @@ pub(super) fn bodies_into<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let PartRef::Mesh { mesh, milled: None, onto } = part else { return Err(PlanError::ChartOfCurves) };
+    let PartRef::Mesh { mesh, milled, onto } = part else { return Err(PlanError::ChartOfCurves) };
+    if milled.is_some() {
+        return Err(PlanError::PreformOfChart);
+    }
     if profile.layers.bodies.len() > 1 && !profile.process.layers.is_empty() {
         return Err(PlanError::Parts(super::parts::NUMBERED_APART));
     }

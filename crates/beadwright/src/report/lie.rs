@@ -1,6 +1,6 @@
 //! How a layer lies in space, for the scripts of the report: `lie.js` takes its points there.
 
-use crate::chart::{Chart, Plane, Sheet};
+use crate::chart::{Chart, Plane, Sheet, Side};
 use crate::layer::Layer;
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -35,11 +35,12 @@ fn place(chart: &Chart, middle: f64, body: usize) -> Value {
                 .map(|axis| Chart::Plane(Plane { up: surface.up(), origin: DVec3::ZERO }).sheet(0.0).at(axis).place);
             json!({ "over": { "axes": axes, "middle": middle, "body": body } })
         }
-        Chart::Cylinder(_) => {
+        Chart::Cylinder(cylinder) => {
             let [around, axis] = origin.along;
             let radius = radius(&sheet);
-            let outward = if around.cross(axis).dot(origin.normal) > 0.0 { origin.normal } else { -origin.normal };
-            let side = outward.dot(origin.normal);
+            // Inside a bore, layers follow one another towards the axis.
+            let side = if cylinder.side == Side::Inner { -1.0 } else { 1.0 };
+            let outward = origin.normal * side;
             let centre = origin.place - outward * radius;
             json!({ "around": { "centre": centre, "axis": axis, "out": outward, "around": around, "radius": radius, "side": side } })
         }

@@ -191,7 +191,7 @@ pub const ALL: &[Example] = &[
     },
     Example {
         name: "y-tube",
-        about: "tube of 60 mm with a 16 mm wall that forks into two, welded as three bodies, 156 × 60 × 156 mm",
+        about: "tube of 60 mm with a 16 mm wall that forks into two, welded as three bodies, 156.3 × 60 × 156.2 mm",
         build: y_tube::build,
         curves: None,
         chart: None,
