@@ -43,7 +43,7 @@ static CASES: LazyLock<Vec<(String, Plan, Profile)>> = LazyLock::new(|| {
     // The two large closed ones are planned in wall_paths.rs, and the bracket as its preform.
     let parts = example::ALL
         .par_iter()
-        .filter(|part| !["bracket", "gourd", "pot"].contains(&part.name) && part.chart.is_none());
+        .filter(|part| !["bracket", "gourd", "pot"].contains(&part.name) && part.bodies().is_none());
     let cases = parts.flat_map_iter(|part| {
         let thin = THIN_WALLED.contains(&part.name);
         let strategies = StrategyName::ALL.iter().filter(move |strategy| (**strategy == StrategyName::Wall) == thin);
