@@ -177,7 +177,7 @@ impl<'a> Known<'a> {
         self.open.parsed.clone()
     }
 
-    /// The plate on which the part is built, if the profile has one.
+    /// The plate on which the part is built, if the profile has one and the first layers lie on it.
     pub(crate) fn plate(self) -> Option<Plate> {
         let profile = self.plans.own.profile.as_ref()?;
         let plate = profile.substrate.as_ref()?;
