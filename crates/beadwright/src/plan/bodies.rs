@@ -3,18 +3,16 @@
 
 use super::beside::{Beside, Watch};
 use super::charted::{self, Unrolled};
-use super::parts::Remarks;
+use super::row::{NUMBERED_APART, Row};
 use super::support::Footing;
+use super::warm::Warmth;
 use super::{Header, PlanError, Sink, Summary, plan_at, slabs_of, warm};
 use crate::chart::{Chart, warp};
-use crate::layer::{Extent, Layer};
-use crate::metrics::Metrics;
+use crate::layer::Extent;
 use crate::model::{Mesh, PartRef};
 use crate::profile::{Body, Profile};
 use crate::slice::{Slab, Slicer};
 use crate::task::Task;
-use crate::warning::Warnings;
-use glam::DVec3;
 use planar::{Polygon, Region};
 use std::borrow::Cow;
 
@@ -42,60 +40,39 @@ pub(super) fn bodies_into<S: Sink + Send>(
         return Err(PlanError::PreformOfChart);
     }
     if profile.layers.bodies.len() > 1 && !profile.process.layers.is_empty() {
-        return Err(PlanError::Parts(super::parts::NUMBERED_APART));
+        return Err(PlanError::Parts(NUMBERED_APART));
     }
     let whole = [Body::of(name, profile.layers.chart.clone())];
     let bodies = if profile.layers.bodies.is_empty() { &whole[..] } else { &profile.layers.bodies };
     let bodies = bodies.iter().enumerate();
     let owned: Vec<Own<'_>> =
         bodies.map(|(k, body)| Own { body, profile: profile.of_body(k), mesh: body.of_mesh(mesh) }).collect();
-    let sized = owned.iter().map(|own| own.sized(task)).collect::<Result<Vec<_>, _>>()?;
-    let bounds = sized.iter().map(|(_, bounds)| *bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let ready = owned.iter().map(|own| Ready::of(own, task)).collect::<Result<Vec<_>, _>>()?;
+    let bounds = ready.iter().map(|ready| ready.part().bounds()).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
     let (low, high) = bounds.unwrap_or_default();
-    let counts: Vec<usize> = sized.iter().map(|(count, _)| *count).collect();
-    let extent = Extent { layers: counts.iter().sum(), low, high };
+    let extent = Extent { layers: ready.iter().map(|ready| ready.layers).sum(), low, high };
     let strategy = profile.fill.strategy.to_string();
     sink.begin(&Header { part: name.to_owned(), profile: profile.name.clone(), strategy, extent })
         .map_err(PlanError::Sink)?;
-    let mut row =
-        Row { profile, first: 0, body: 0, sink, metrics: Metrics::new(profile), warnings: Warnings::default() };
-    let mut remarks = Remarks::of(profile);
-    let (mut beside, mut volume) = (Beside::new(profile), Some(0.0));
+    let (mut row, mut beside) = (Row::new(profile, sink, owned.len() > 1), Beside::new(profile));
     if let Some(base) = onto {
         beside.finish(BASE, base);
     }
-    for (k, (own, count)) in owned.iter().zip(&counts).enumerate() {
+    for (k, (own, ready)) in owned.iter().zip(&ready).enumerate() {
         row.body = k;
         let under = owned[..k].iter().map(|other| &other.mesh).chain(onto);
         let footing = if k == 0 && onto.is_none() { Footing::Plate } else { own.footing(under, task)? };
         let mut watch = Watch::new(&mut row, &mut beside, own.body, &own.profile);
-        let summary = own.plan(footing, task, &mut watch)?;
-        remarks.add((owned.len() > 1).then_some(&own.body.name), &summary);
+        let summary = ready.plan(footing, task, &mut watch)?;
+        row.finish(&own.body.name, ready.layers, &summary);
         beside.finish(&own.body.name, &own.mesh);
-        volume = volume.zip(summary.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
-        row.first += count;
     }
-    let Row { mut metrics, warnings, .. } = row;
-    metrics.mesh_volume_mm3 = volume;
-    let mut forbidden = remarks.forbidden_by(&warnings);
-    let Remarks { mut notes, .. } = remarks;
-    notes.splice(0..0, (owned.len() > 1).then(|| sentence(&owned, &counts)));
-    notes.extend(missing(mesh, volume).filter(|_| !profile.layers.bodies.is_empty()));
-    notes.extend(beside.note());
-    forbidden.extend(beside.sentences());
-    Ok(Summary { metrics, warnings, notes, forbidden })
-}
-
-/// Which layers belong to which body.
-fn sentence(owned: &[Own<'_>], counts: &[usize]) -> String {
-    let mut first = 1;
-    let range = |(own, count): (&Own<'_>, &usize)| {
-        let text = format!("{} (layers {first} to {})", own.body.name, first + count - 1);
-        first += count;
-        text
-    };
-    let ranges: Vec<String> = owned.iter().zip(counts).map(range).collect();
-    format!("The part is welded as {} bodies, one after another: {}.", owned.len(), ranges.join(", "))
+    let mut summary = row.summary(&format!("The part is welded as {} bodies, one after another", owned.len()));
+    let volume = summary.metrics.mesh_volume_mm3;
+    summary.notes.extend(missing(mesh, volume).filter(|_| !profile.layers.bodies.is_empty()));
+    summary.notes.extend(beside.note());
+    summary.forbidden.extend(beside.sentences());
+    Ok(summary)
 }
 
 /// What messages call an existing part.
@@ -140,36 +117,6 @@ impl Own<'_> {
         }
     }
 
-    /// How many layers it has, and its lowest and highest coordinates as it is unrolled, mm.
-    fn sized<E>(&self, task: &Task) -> Result<(usize, (DVec3, DVec3)), PlanError<E>> {
-        if self.mesh.triangles.is_empty() {
-            return Err(self.wrong("nothing of the part lies above all planes of its within."));
-        }
-        let unrolled = Unrolled::of(self.part(), &self.profile, task).map_err(|error| self.named(error))?;
-        let part = unrolled.as_ref().map_or(self.part(), Unrolled::part);
-        let warmth = warm::predicted(part, &self.profile, task)?;
-        Ok((slabs_of(&warmth, part, &self.profile, task)?.len(), part.bounds()))
-    }
-
-    fn plan<S: Sink + Send>(
-        &self,
-        footing: Footing,
-        task: &Task,
-        sink: &mut S,
-    ) -> Result<Summary, PlanError<S::Error>> {
-        let (name, profile) = (&self.body.name, &*self.profile);
-        let unrolled = Unrolled::of(self.part(), profile, task).map_err(|error| self.named(error))?;
-        let part = unrolled.as_ref().map_or(self.part(), Unrolled::part);
-        let warmth = warm::predicted(part, profile, task)?;
-        let planned = plan_at(&warmth, name, part, footing, profile, task, sink);
-        let mut summary = planned.map_err(|error| self.named(error))?;
-        summary.forbidden.extend(charted::too_narrow(part.bounds().1.z, profile));
-        if let PartRef::Mesh { mesh, .. } = part {
-            summary.notes.extend(charted::stretched(mesh, &profile.layers.chart));
-        }
-        Ok(summary)
-    }
-
     /// What its first layer lies on.
     fn footing<'m, E>(&self, below: impl Iterator<Item = &'m Mesh>, task: &Task) -> Result<Footing, PlanError<E>> {
         let chart = &self.profile.layers.chart;
@@ -180,6 +127,48 @@ impl Own<'_> {
         let metal = metal.collect::<Result<Vec<_>, _>>()?;
         let metal = metal.into_iter().fold(Region::default(), |all, part| all.union(&part));
         Ok(Footing::Metal(metal.into_polygons()))
+    }
+}
+
+/// A body in the coordinates of its chart, ready to be planned.
+struct Ready<'a> {
+    own: &'a Own<'a>,
+    unrolled: Option<Unrolled<'a>>,
+    warmth: Warmth,
+    /// Number of layers.
+    layers: usize,
+}
+
+impl<'a> Ready<'a> {
+    fn of<E>(own: &'a Own<'a>, task: &Task) -> Result<Self, PlanError<E>> {
+        if own.mesh.triangles.is_empty() {
+            return Err(own.wrong("nothing of the part lies above all planes of its within."));
+        }
+        let unrolled = Unrolled::of(own.part(), &own.profile, task).map_err(|error| own.named(error))?;
+        let mut ready = Self { own, unrolled, warmth: Warmth::default(), layers: 0 };
+        ready.warmth = warm::predicted(ready.part(), &own.profile, task)?;
+        ready.layers = slabs_of(&ready.warmth, ready.part(), &own.profile, task)?.len();
+        Ok(ready)
+    }
+
+    fn part(&self) -> PartRef<'_> {
+        self.unrolled.as_ref().map_or(self.own.part(), Unrolled::part)
+    }
+
+    fn plan<S: Sink + Send>(
+        &self,
+        footing: Footing,
+        task: &Task,
+        sink: &mut S,
+    ) -> Result<Summary, PlanError<S::Error>> {
+        let (own, part) = (self.own, self.part());
+        let planned = plan_at(&self.warmth, &own.body.name, part, footing, &own.profile, task, sink);
+        let mut summary = planned.map_err(|error| own.named(error))?;
+        summary.forbidden.extend(charted::too_narrow(part.bounds().1.z, &own.profile));
+        if let PartRef::Mesh { mesh, .. } = part {
+            summary.notes.extend(charted::stretched(mesh, &own.profile.layers.chart));
+        }
+        Ok(summary)
     }
 }
 
@@ -194,37 +183,4 @@ fn under<E>(chart: &Chart, mesh: &Mesh, profile: &Profile, task: &Task) -> Resul
     let (here, there) = (chart.sheet(0.0), chart.sheet(-depth / 2.0));
     let moved = islands.iter().map(|island| island.moved(|p| here.across(p, &there))).collect();
     Ok(Region::from_normalised(moved))
-}
-
-/// Numbers the layers of all bodies consecutively.
-struct Row<'a, S> {
-    profile: &'a Profile,
-    /// Layers of the bodies before.
-    first: usize,
-    body: usize,
-    sink: &'a mut S,
-    metrics: Metrics,
-    warnings: Warnings,
-}
-
-impl<S: Sink> Sink for Row<'_, S> {
-    type Error = S::Error;
-
-    /// The plan as a whole has already begun.
-    fn begin(&mut self, _part: &Header) -> Result<(), S::Error> {
-        Ok(())
-    }
-
-    fn layer(&mut self, mut layer: Layer) -> Result<(), S::Error> {
-        layer.index += self.first;
-        layer.body = self.body;
-        layer.warnings.iter_mut().for_each(|warning| warning.layer += self.first);
-        let sheet = self.profile.layers.sheet(&layer);
-        for warning in &layer.warnings {
-            let at = sheet.map(|sheet| sheet.at(warning.place.extend(layer.z)).place);
-            self.warnings.add_at(*warning, layer.z, at);
-        }
-        self.metrics.add(&layer);
-        self.sink.layer(layer)
-    }
 }

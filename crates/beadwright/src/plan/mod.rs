@@ -24,6 +24,7 @@
 //! | `levels` | where the layers of a wall lie |
 //! | `milled` | whether metal lies wherever the part will be that is milled from a preform |
 //! | `result` | what a plan is, where its layers go, why there may be none |
+//! | `row` | the layers of parts or bodies that are welded one after another, as those of one plan |
 //! | `reasons` | why a plan's volume differs from the part's, or is nothing |
 //! | [`preview`] | one layer ahead of the others |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
@@ -53,6 +54,7 @@ mod preview;
 mod reasons;
 mod relight;
 mod result;
+mod row;
 mod scan_lines;
 pub mod stock;
 mod support;

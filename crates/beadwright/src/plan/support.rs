@@ -44,10 +44,9 @@ pub(super) struct Support {
 }
 
 /// What the first layer of a body lies on.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub(super) enum Footing {
     /// Metal everywhere: a plate, or what the chart says is there.
-    #[default]
     Plate,
     /// Metal within these outlines, seen on the first layer's underside.
     Metal(Vec<Polygon>),

@@ -3,7 +3,6 @@
 use super::{Predict, Profile};
 use crate::chart::{Chart, Plane};
 use crate::fill::StrategyName;
-use crate::layer::Layer;
 use crate::model::Mesh;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -36,7 +35,7 @@ pub struct Body {
 }
 
 /// A file of bodies.
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
     body: Vec<Body>,
@@ -133,10 +132,5 @@ impl Profile {
         own.fill.strategy = strategy.unwrap_or(own.fill.strategy);
         own.layers.predict = predict.unwrap_or(own.layers.predict);
         Cow::Owned(own)
-    }
-
-    /// The name of a layer's body; `None` where the part is one body.
-    pub fn body_of(&self, layer: &Layer) -> Option<&str> {
-        self.layers.bodies.get(layer.body).map(|body| body.name.as_str())
     }
 }

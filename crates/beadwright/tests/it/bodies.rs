@@ -216,11 +216,10 @@ fn the_checks_of_a_plan_of_bodies_are_those_of_its_bodies() {
     let whole = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
     assert!(whole.iter().all(|f| !["layers", "overhang", "air", "crossing"].contains(&f.kind)), "{whole:?}");
     let mut each = Vec::new();
-    for (k, body) in profile.layers.bodies.iter().enumerate() {
+    for k in 0..profile.layers.bodies.len() {
         let own = profile.of_body(k);
         let layers: Vec<&Layer> = plan.layers.iter().filter(|layer| layer.body == k).collect();
         each.extend(check::check(&layers, &own, settings, &Task::new()).unwrap());
-        assert_eq!(profile.body_of(layers[0]), Some(body.name.as_str()));
     }
     let texts = |found: &[beadwright::Finding]| found.iter().map(|f| f.text.clone()).collect::<Vec<_>>();
     assert_eq!(texts(&whole), texts(&each));

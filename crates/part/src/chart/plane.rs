@@ -38,7 +38,7 @@ impl Plane {
     /// // A cross 20 mm high, cut by a plane that leans by 45 degrees through its middle: half of it is left.
     /// let cross = example::find("cross").ok_or("no such example")?.mesh();
     /// let half: Plane = "up=1/0/1,through=0/0/10".parse()?;
-    /// assert!((half.above(&cross).volume() / cross.volume() - 0.5).abs() < 1e-4);
+    /// assert!((half.above(&cross).volume() / cross.volume() - 0.5).abs() < 1e-5);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn above(&self, mesh: &Mesh) -> Mesh {
