@@ -1,19 +1,25 @@
-//! `beadwright deviation`: how far a scan of the built part lies from the part.
+//! `beadwright deviation`: how far a scan of the built part, or what a plan builds, lies from the part.
 
+use crate::program::Source;
 use crate::{file, model, profile, progress};
 use anyhow::Context;
 use beadwright::adapt::scan;
+use beadwright::as_built::{self, AsBuilt};
 use beadwright::deviation::{Deviation, Doubt, Figures, deviation};
-use beadwright::model::Units;
+use beadwright::model::{Mesh, Units};
+use beadwright::profile::Profile;
+use beadwright::task::Task;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
     /// Scan, in the coordinates of the part as it is planned, with z = 0 on the plate: a surface or cloud of points (PLY,
-    /// STL, OBJ, 3MF, AMF), lines of x, y, z (CSV, XYZ), or a height map. It need not be closed.
+    /// STL, OBJ, 3MF, AMF), lines of x, y, z (CSV, XYZ), or a height map. It need not be closed. Or a plan.json: what its beads
+    /// build, with its own profile.
+    #[arg(value_name = "SCAN|PLAN")]
     scan: PathBuf,
     /// Unit of the scan's coordinates, if its file does not give it.
     #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", default_value = "mm")]
@@ -21,6 +27,9 @@ pub(crate) struct Arguments {
     /// The scan is of the part's preform: what lies outside the part is to be milled off.
     #[arg(long)]
     preform: bool,
+    /// The existing part that the plan was made with: both are placed as one.
+    #[arg(long, value_name = "MODEL", conflicts_with = "preform")]
+    onto: Option<PathBuf>,
     #[command(flatten)]
     wanted: profile::Wanted,
     /// Print machine-readable JSON.
@@ -28,37 +37,102 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+/// What was compared with the part.
+struct Compared {
+    /// What it is: the format of a scan, or a plan.
+    format: String,
+    deviation: Deviation,
+    /// What the metal of a plan has in common with the part.
+    built: Option<AsBuilt>,
+}
+
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
-    let profile = profile::load(name, &arguments.wanted.set)?;
     let (task, bar) = progress::task()?;
-    let use_as = if arguments.preform { model::Use::Preform } else { model::Use::AsDrawn };
-    let mut part = arguments.model.placed(&profile, use_as, &task)?.mesh;
-    if arguments.preform {
-        let lift = profile.preform_settings().lift();
-        part.vertices.iter_mut().for_each(|vertex| vertex.z += lift);
-    }
-    let context = || format!("{}", arguments.scan.display());
-    let mut scan = scan::read(&file::read(&arguments.scan)?, &task).with_context(context)?;
-    let millimetres = arguments.scan_units.in_mm();
-    scan.points.iter_mut().for_each(|point| *point *= millimetres);
-    let compared = deviation(&part, &scan.points, profile.fill.machining_allowance, &task);
+    let compared = if is_plan(&arguments.scan) { arguments.plan(&task) } else { arguments.scan(&task) };
     bar.finish_and_clear();
-    let Deviation { figures, plate, doubts, .. } = compared.with_context(context)?;
+    let Compared { format, deviation, built } = compared?;
+    let Deviation { figures, plate, doubts, .. } = deviation;
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let value = serde_json::json!({ "format": scan.format, "figures": figures, "plate": plate, "doubts": doubts });
+        let mut value =
+            serde_json::json!({ "format": format, "figures": figures, "plate": plate, "doubts": doubts });
+        if let Some(built) = built {
+            value["built"] = serde_json::json!(built);
+            value["built"]["agreement"] = built.agreement().into();
+        }
         return Ok(writeln!(out, "{value:#}")?);
     }
     for doubt in &doubts {
         writeln!(out, "warning: {doubt}{}", remedy(doubt))?;
     }
-    let (scan, format) = (arguments.scan.display(), scan.format);
-    writeln!(out, "{scan} against {}: {format} of {} points", arguments.model.model.display(), figures.points)?;
+    let (scan, part) = (arguments.scan.display(), arguments.model.model.display());
+    writeln!(out, "{scan} against {part}: {format} of {} points", figures.points)?;
     if plate > 0 {
         writeln!(out, "{plate} points of the plate around the part are left out")?;
     }
+    if let Some(built) = &built {
+        print_built(&mut out, built)?;
+    }
     print(&mut out, &figures)
+}
+
+/// Whether a file is a plan: no scan is an object of JSON.
+fn is_plan(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}
+
+impl Arguments {
+    /// The part as it was planned.
+    fn part(&self, profile: &Profile, task: &Task) -> anyhow::Result<Mesh> {
+        if let Some(base) = &self.onto {
+            return Ok(self.model.placed_onto(base, profile, task)?.0.mesh);
+        }
+        let use_as = if self.preform { model::Use::Preform } else { model::Use::AsDrawn };
+        let mut part = self.model.placed(profile, use_as, task)?.mesh;
+        if self.preform {
+            let lift = profile.preform_settings().lift();
+            part.vertices.iter_mut().for_each(|vertex| vertex.z += lift);
+        }
+        Ok(part)
+    }
+
+    fn scan(&self, task: &Task) -> anyhow::Result<Compared> {
+        let name = self.wanted.profile.as_deref().unwrap_or(profile::USUAL);
+        let profile = profile::load(name, &self.wanted.set)?;
+        let part = self.part(&profile, task)?;
+        let context = || format!("{}", self.scan.display());
+        let mut scan = scan::read(&file::read(&self.scan)?, task).with_context(context)?;
+        let millimetres = self.scan_units.in_mm();
+        scan.points.iter_mut().for_each(|point| *point *= millimetres);
+        let compared = deviation(&part, &scan.points, profile.fill.machining_allowance, task);
+        let deviation = compared.with_context(context)?;
+        Ok(Compared { format: scan.format.to_string(), deviation, built: None })
+    }
+
+    fn plan(&self, task: &Task) -> anyhow::Result<Compared> {
+        let source = Source::open(&self.scan)?;
+        let profile = source.profile(&self.wanted)?;
+        let part = self.part(&profile, task)?;
+        let layers = source.plan().map_or(&[][..], |plan| &plan.layers);
+        let built = as_built::as_built(layers, &profile, &part, task);
+        let built = built.with_context(|| format!("{}", self.scan.display()))?;
+        Ok(Compared { format: "surface of its beads".to_owned(), deviation: built.surface.clone(), built: Some(built) })
+    }
+}
+
+fn print_built(out: &mut impl Write, built: &AsBuilt) -> anyhow::Result<()> {
+    let cubic = |volume: f64| volume / 1e3;
+    writeln!(
+        out,
+        "{:.1} % of both together is in common: {:.1} of {:.1} cm³ of the part hold metal, {:.1} cm³ lie outside it (counted in \
+         voxels of {:.2} mm)",
+        100.0 * built.agreement(),
+        cubic(built.common),
+        cubic(built.part),
+        cubic(built.metal - built.common),
+        built.step
+    )?;
+    Ok(())
 }
 
 /// What to change in the command.

@@ -21,6 +21,7 @@
 //! this one are in `examples/`.
 
 pub mod adapt;
+pub mod as_built;
 pub mod build;
 pub mod check;
 pub mod compare;

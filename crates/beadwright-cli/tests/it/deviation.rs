@@ -70,3 +70,19 @@ fn what_cannot_be_compared_is_refused() {
         assert!(output.status.code() == Some(1) && error.contains(reason), "{error}");
     }
 }
+
+#[test]
+fn a_plan_is_compared_with_its_part() {
+    let folder = folder(0.0, 1.0);
+    let mut plan = Command::new(env!("CARGO_BIN_EXE_beadwright"));
+    let status = plan.current_dir(folder.path()).args(["plan", "cross.stl", "-o", "out", "--quiet"]).status().unwrap();
+    assert!(status.success());
+    let text = said(folder.path(), &["cross.stl", "out/plan.json"]);
+    assert!(text.starts_with("out/plan.json against cross.stl: ") && text.contains("is in common"), "{text}");
+    let built = &figures(folder.path(), &["cross.stl", "out/plan.json"])["built"];
+    let figure = |name: &str| built[name].as_f64().unwrap();
+    assert!(figure("agreement") > 0.95 && figure("common") <= figure("part").min(figure("metal")), "{built}");
+    // Placed elsewhere, they have nothing in common, and the first line says what to do.
+    let text = said(folder.path(), &["cross.stl", "out/plan.json", "--shift", "400,0"]);
+    assert!(text.starts_with("warning: half of the scan lies more than") && text.contains("\n0.0 % of both"), "{text}");
+}

@@ -4,6 +4,7 @@ use super::{Predict, Profile};
 use crate::chart::{Chart, Plane};
 use crate::fill::StrategyName;
 use crate::model::Mesh;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -117,6 +118,11 @@ impl Body {
             _ => None,
         };
         self.within.iter().chain(first).fold(mesh.clone(), |rest, plane| plane.above(&rest))
+    }
+
+    /// Whether a place of the part belongs to it.
+    pub fn has(&self, p: DVec3) -> bool {
+        self.chart.coordinates(p).z >= 0.0 && self.within.iter().all(|plane| plane.coordinates(p).z >= 0.0)
     }
 }
 

@@ -6,6 +6,7 @@ use crate::layer::Layer;
 use crate::limit::{Limit, limits};
 use crate::slice::LayerFit;
 use crate::wedge::Wedge;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// The layers.
@@ -109,6 +110,14 @@ impl LayersSection {
     pub fn window(&self) -> (f64, f64) {
         let [thin, thick] = [THIN, THICK].map(|part| part * self.height);
         (self.min_height.unwrap_or(thin), self.max_height.unwrap_or(thick))
+    }
+
+    /// Whether a place of the part is to be welded: what is in no body, such as the shaft below layers around it, is there already.
+    pub fn has(&self, p: DVec3) -> bool {
+        match &self.bodies[..] {
+            [] => self.chart.coordinates(p).z >= 0.0,
+            bodies => bodies.iter().any(|body| body.has(p)),
+        }
     }
 
     /// The limits of the numbers.

@@ -62,7 +62,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["plan"],
             &["plan_file", "check"],
             &["report"],
-            &["adapt", "export", "files", "simulate"],
+            &["adapt", "as_built", "export", "files", "simulate"],
             &["build"],
             &["compare"],
             &["read_back"],

@@ -1,159 +1,108 @@
-//! The shape as built: bodies that are closed and hold the metal of the plan, in files that their readers take.
+//! Beads as a solid in space against the part: by closed forms on blocks, and whichever way layers lie.
 
 use crate::common;
 
-use beadwright::export::{self, Beads};
-use beadwright::glam::{DVec3, Vec3};
-use beadwright::layer::{Extent, Layer};
-use beadwright::pass::{Along, Pass, PassKind};
-use beadwright::plan::Header;
-use beadwright::profile::Profile;
-use common::{planned, profile, profile_by};
-use std::collections::HashMap;
+use beadwright::as_built::{AsBuilt, as_built};
+use beadwright::example;
+use beadwright::layer::Layer;
+use beadwright::model::{Mesh, solid::Solid};
+use beadwright::plan::{self, Plan};
+use beadwright::planar::{Polygon, Ring};
+use beadwright::profile::{Body, Profile};
+use beadwright::task::Task;
+use common::profile;
+use glam::{DVec2, DVec3};
 
-type Facet = [DVec3; 3];
-
-fn written(extension: &str, header: &Header, layers: &[Layer], profile: &Profile) -> Vec<u8> {
-    (export::format(extension).unwrap().write)(&Beads { header, layers, profile, heat: None }).unwrap()
+fn compared(layers: &[Layer], profile: &Profile, mesh: &Mesh) -> AsBuilt {
+    as_built(layers, profile, mesh, &Task::new()).unwrap()
 }
 
-/// The triangles of a binary STL file.
-fn facets(stl: &[u8]) -> Vec<Facet> {
-    let number = |b: &[u8]| f64::from(f32::from_le_bytes(b.try_into().unwrap()));
-    let corner = |b: &[u8]| DVec3::new(number(&b[..4]), number(&b[4..8]), number(&b[8..12]));
-    assert_eq!(stl.len(), 84 + 50 * u32::from_le_bytes(stl[80..84].try_into().unwrap()) as usize);
-    stl[84..].chunks(50).map(|r| [corner(&r[12..]), corner(&r[24..]), corner(&r[36..])]).collect()
+fn planned(mesh: &Mesh, profile: &Profile) -> Plan {
+    plan::plan("part", mesh, profile, &Task::new()).unwrap()
 }
 
-fn volume(facets: &[Facet]) -> f64 {
-    facets.iter().map(|[a, b, c]| a.dot(b.cross(*c))).sum::<f64>() / 6.0
+/// Fraction of the metal's surface that lies within 0.6 bead heights of the part's.
+fn near(built: &AsBuilt, profile: &Profile) -> f64 {
+    let reach = 0.6 * profile.bead.height;
+    let distances = &built.surface.distances;
+    distances.iter().filter(|distance| distance.abs() <= reach).count() as f64 / distances.len() as f64
 }
 
-/// Every edge runs as often one way as the other: the surface has no rim.
-fn assert_closed(facets: &[Facet]) {
-    let mut edges: HashMap<[[u64; 3]; 2], i32> = HashMap::new();
-    // Adding 0 makes -0 the same.
-    let key = |p: DVec3| (p + 0.0).to_array().map(f64::to_bits);
-    for facet in facets {
-        for k in 0..3 {
-            let (a, b) = (key(facet[k]), key(facet[(k + 1) % 3]));
-            *edges.entry([a.min(b), a.max(b)]).or_default() += if a < b {
-                1
-            } else if a > b {
-                -1
-            } else {
-                0
-            };
-        }
-    }
-    assert!(edges.values().all(|&sum| sum == 0), "{} open edges", edges.values().filter(|s| **s != 0).count());
-}
+const LENGTH: f64 = 90.0;
+const WIDTH: f64 = 60.0;
 
-/// mm³ of beads without their craters.
-fn metal(profile: &Profile, layers: &[Layer], header: &Header) -> f64 {
-    let pieces = Beads { header, layers, profile, heat: None }.pieces();
-    let laid = profile.bead().area() * profile.process.deposition_speed;
-    pieces.iter().map(|p| p.from.distance(p.to) / p.pace * laid).sum()
+fn block() -> (Mesh, Profile, Plan) {
+    let corners = [(0.0, 0.0), (LENGTH, 0.0), (LENGTH, WIDTH), (0.0, WIDTH)].map(|(x, y)| DVec2::new(x, y));
+    let Solid { vertices, triangles } =
+        Solid::loft(&Polygon::simple(Ring::new(corners.to_vec())), &[0.0, 20.0], |p, _| p);
+    let (mesh, profile) = (Mesh::from_triangles(vertices, triangles).0, profile("cmt-al2319-kuka"));
+    let plan = planned(&mesh, &profile);
+    (mesh, profile, plan)
 }
 
 #[test]
-fn the_shape_holds_the_metal_of_the_plan() {
-    for (part, profile) in [
-        ("cross", profile_by("cmt-al2319-kuka", "hybrid")),
-        ("star", profile_by("cmt-al2319-kuka", "contour")),
-        ("gear", profile_by("plasma-304-cnc", "zigzag")),
-        ("star", profile_by("fdm-abs-0.4", "contour")),
-        ("blade", profile("cmt-steel-robots")),
+fn metal_moved_aside_shares_with_the_part_what_the_closed_form_says() {
+    let (mesh, profile, plan) = block();
+    let whole = compared(&plan.layers, &profile, &mesh);
+    assert!((whole.part / mesh.volume() - 1.0).abs() < 0.01 && whole.agreement() > 0.97, "{whole:?}");
+    for aside in [5.0, 20.0, 2.0 * LENGTH] {
+        let mut layers = plan.layers.clone();
+        let points = layers.iter_mut().flat_map(|layer| &mut layer.passes).flat_map(|pass| &mut pass.points);
+        points.for_each(|p| p.x += aside);
+        let moved = compared(&layers, &profile, &mesh);
+        let (shared, found) = ((LENGTH - aside).max(0.0) / LENGTH, moved.common / whole.common);
+        // Its ends are known to a voxel.
+        assert!((found - shared).abs() < 1.2 * moved.step / LENGTH, "{aside}: {found} {shared}");
+    }
+}
+
+#[test]
+fn the_metal_of_a_layer_left_out_is_missing() {
+    let (mesh, profile, plan) = block();
+    let whole = compared(&plan.layers, &profile, &mesh);
+    let mut layers = plan.layers.clone();
+    let gone = layers.remove(3);
+    let without = compared(&layers, &profile, &mesh);
+    let (missing, layer) = (whole.common - without.common, gone.slice_area * gone.height);
+    // Its height is known to a voxel.
+    assert!((missing - layer).abs() < 1.01 * gone.slice_area * whole.step, "{missing} of {layer}");
+    assert!(without.surface.figures.lowest.distance < -5.0, "{:?}", without.surface.figures.lowest);
+    assert!(whole.surface.figures.lowest.distance > -2.0, "{:?}", whole.surface.figures.lowest);
+}
+
+#[test]
+fn beads_lie_where_the_part_is_whichever_way_its_layers_lie() {
+    // How much metal and part have in common, and how much of the metal's surface is near that of the part.
+    for (name, agreement, surface) in [
+        ("hub", 0.97, 0.99),
+        ("elbow", 0.985, 0.97),
+        ("shaft", 0.96, 0.96),
+        ("y-tube", 0.96, 0.96),
+        ("dome", 0.985, 0.999),
+        ("clad", 0.98, 0.999),
     ] {
-        let mut plan = planned(part, &profile);
-        plan.layers.truncate(4);
-        let expected = metal(&profile, &plan.layers, &plan.header);
-        let facets = facets(&written("stl", &plan.header, &plan.layers, &profile));
-        assert_closed(&facets);
-        let built = volume(&facets);
-        // Coordinates of 24 bits.
-        assert!((built / expected - 1.0).abs() < 2e-3, "{part}: {built} mm³ for {expected}");
-        let low = facets.iter().flatten().map(|p| p.z).fold(f64::INFINITY, f64::min);
-        assert!(low.abs() < 1e-3, "{part} stands at {low} mm");
+        let example = example::find(name).unwrap();
+        let (mesh, mut profile) = (example.mesh(), profile("cmt-al2319-kuka"));
+        profile.layers.bodies = Body::read(&example.bodies().unwrap()).unwrap();
+        let plan = planned(&mesh, &profile);
+        let built = compared(&plan.layers, &profile, &mesh);
+        let near = near(&built, &profile);
+        assert!(built.agreement() > agreement && near > surface, "{name}: {} {near}", built.agreement());
+        // What is there already is neither part nor surface; what is welded is the plan's.
+        let whole = plan.summary.metrics.mesh_volume_mm3.unwrap();
+        assert!((built.part / whole - 1.0).abs() < 0.02, "{name}: {} of {whole}", built.part);
     }
 }
 
-/// A bead around a square: a frame of four prisms with mitred corners.
 #[test]
-fn a_square_has_the_volume_of_its_prisms() {
-    let mut profile = profile("cmt-al2319-kuka");
-    profile.start_stop = Default::default();
-    for turn in [0.0_f64, 20.0, 45.0, 77.0] {
-        let at = |x: f64, y: f64| {
-            let (sin, cos) = turn.to_radians().sin_cos();
-            DVec3::new(x * cos - y * sin, x * sin + y * cos, 2.0)
-        };
-        let points = vec![at(-40.0, -40.0), at(40.0, -40.0), at(40.0, 40.0), at(-40.0, 40.0)];
-        let pace = profile.process.deposition_speed;
-        let pass = |closed| Pass {
-            kind: PassKind::Contour,
-            closed,
-            points: points.clone(),
-            width: Along::Same(profile.bead.width),
-            pace: Along::Same(pace),
-            wait: 0.0,
-        };
-        for (closed, length) in [(true, 320.0), (false, 240.0)] {
-            let layer = Layer { z: 2.0, height: 2.0, passes: vec![pass(closed)], ..Layer::default() };
-            let header = Header {
-                part: "square".into(),
-                profile: String::new(),
-                strategy: String::new(),
-                extent: Extent { layers: 1, ..Extent::default() },
-            };
-            let facets = facets(&written("stl", &header, std::slice::from_ref(&layer), &profile));
-            assert_closed(&facets);
-            let (built, expected) = (volume(&facets), length * profile.bead().area());
-            assert!((built / expected - 1.0).abs() < 1e-5, "{turn}°, {closed}: {built} mm³ for {expected}");
-            let high = facets.iter().flatten().map(|p| p.z).fold(0.0, f64::max);
-            assert!((high / profile.bead.height - 1.0).abs() < 0.03, "{high} mm high");
-        }
-    }
-}
-
-/// GLB as its specification tells it: two chunks, and accessors that fit their views.
-#[test]
-fn glb_holds_the_same_bodies() {
-    let profile = profile_by("cmt-al2319-kuka", "compound");
-    let plan = planned("cross", &profile);
-    let stl = facets(&written("stl", &plan.header, &plan.layers, &profile));
-    let glb = written("glb", &plan.header, &plan.layers, &profile);
-    let word = |at: usize| u32::from_le_bytes(glb[at..at + 4].try_into().unwrap()) as usize;
-    assert_eq!((&glb[..4], word(4), word(8)), (&b"glTF"[..], 2, glb.len()));
-    let json_length = word(12);
-    assert_eq!((&glb[16..20], json_length % 4), (&b"JSON"[..], 0));
-    let json: serde_json::Value = serde_json::from_slice(&glb[20..20 + json_length]).unwrap();
-    let bin = 20 + json_length;
-    assert_eq!((&glb[bin + 4..bin + 8], word(bin) % 4, bin + 8 + word(bin)), (&b"BIN\0"[..], 0, glb.len()));
-    let data = &glb[bin + 8..];
-    assert_eq!(json["buffers"][0]["byteLength"], data.len());
-    let view = |accessor: &serde_json::Value| {
-        let view = &json["bufferViews"][accessor["bufferView"].as_u64().unwrap() as usize];
-        let [offset, length] = ["byteOffset", "byteLength"].map(|key| view[key].as_u64().unwrap() as usize);
-        &data[offset..offset + length]
-    };
-    let mut facets: Vec<Facet> = Vec::new();
-    for primitive in json["meshes"][0]["primitives"].as_array().unwrap() {
-        let accessor = |key: &serde_json::Value| &json["accessors"][key.as_u64().unwrap() as usize];
-        let places = accessor(&primitive["attributes"]["POSITION"]);
-        let number = |b: &[u8]| f32::from_le_bytes(b.try_into().unwrap());
-        let corners: Vec<Vec3> =
-            view(places).chunks(12).map(|b| [0, 4, 8].map(|k| number(&b[k..k + 4])).into()).collect();
-        assert_eq!(places["count"], corners.len());
-        let high = corners.iter().copied().fold(Vec3::NEG_INFINITY, Vec3::max);
-        assert_eq!(serde_json::json!(high.to_array()), places["max"]);
-        let indices = accessor(&primitive["indices"]);
-        let index = |b: &[u8]| corners[u32::from_le_bytes(b.try_into().unwrap()) as usize].as_dvec3();
-        let triangles = view(indices).chunks(12).map(|b| [index(&b[..4]), index(&b[4..8]), index(&b[8..])]);
-        facets.extend(triangles);
-        assert!(view(indices).len() == 4 * indices["count"].as_u64().unwrap() as usize);
-    }
-    assert_eq!(facets.len(), stl.len());
-    assert!((volume(&facets) / volume(&stl) - 1.0).abs() < 1e-6);
-    assert_closed(&facets);
+fn what_is_left_out_counts_wherever_the_part_lies() {
+    let (mesh, profile, plan) = block();
+    let whole = compared(&plan.layers, &profile, &mesh);
+    let by = DVec3::new(317.3, -911.7, 0.0);
+    let (mut mesh, mut layers) = (mesh, plan.layers);
+    mesh.vertices.iter_mut().for_each(|p| *p += by);
+    let points = layers.iter_mut().flat_map(|layer| &mut layer.passes).flat_map(|pass| &mut pass.points);
+    points.for_each(|p| *p += by);
+    let moved = compared(&layers, &profile, &mesh);
+    assert!((moved.agreement() - whole.agreement()).abs() < 1e-3, "{} {}", moved.agreement(), whole.agreement());
 }

@@ -82,6 +82,7 @@ mod start_stop;
 mod stl;
 mod support;
 mod surface;
+mod swept;
 mod task;
 mod tilt;
 mod toolpath;

@@ -53,7 +53,8 @@ impl Plane {
         own
     }
 
-    pub(super) fn coordinates(&self, p: DVec3) -> DVec3 {
+    /// The coordinates of a point of space on the plane: along it, and its height above it, mm.
+    pub fn coordinates(&self, p: DVec3) -> DVec3 {
         self.turn().conjugate() * (p - self.origin)
     }
 
