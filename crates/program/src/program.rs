@@ -7,6 +7,7 @@
 
 mod attitude;
 mod placed;
+mod positioner;
 mod safety;
 mod settings;
 mod spread;
@@ -16,6 +17,8 @@ mod turns;
 mod weave;
 
 pub use attitude::Attitude;
+use positioner::Holder;
+pub use positioner::{Held, Positioner, PositionerAxis, Turning};
 pub use safety::Safety;
 pub use settings::ProgramSettings;
 pub use turns::Turns;
@@ -64,7 +67,7 @@ pub enum Instruction {
         pass: usize,
         /// A point above its start to which the torch can come from anywhere, mm.
         above: DVec3,
-        /// The attitude of torch and table on the way to the start and there.
+        /// The attitude of torch and part on the way to the start and there.
         attitude: Attitude,
     },
     /// The torch is above the start of the pass. What came since `PassStart` led there from the pass before; a program
@@ -85,7 +88,7 @@ pub enum Instruction {
         /// Multiple of the nominal wire feed.
         ratio: f64,
     },
-    /// The attitude of torch and table at the end of the next move and from there on.
+    /// The attitude of torch and part at the end of the next move and from there on.
     Turn {
         /// It.
         attitude: Attitude,
@@ -100,7 +103,7 @@ pub enum Instruction {
         speed: f64,
         /// Whether the pass ends here, with an exact stop.
         last: bool,
-        /// The attitude of torch and table at its end; it stays so until the next `Weld` or `PassStart`.
+        /// The attitude of torch and part at its end; it stays so until the next `Weld` or `PassStart`.
         attitude: Attitude,
     },
     /// The arc burns on the spot, at the end of a pass, to fill its crater.
@@ -131,7 +134,15 @@ impl Instruction {
         }
     }
 
-    /// The attitude of torch and table from here on; `None` where it does not change.
+    /// The attitude that it sets.
+    fn attitude_mut(&mut self) -> Option<&mut Attitude> {
+        match self {
+            Self::PassStart { attitude, .. } | Self::Turn { attitude } | Self::Weld { attitude, .. } => Some(attitude),
+            _ => None,
+        }
+    }
+
+    /// The attitude of torch and part from here on; `None` where it does not change.
     pub fn attitude(&self) -> Option<Attitude> {
         match *self {
             Self::PassStart { attitude, .. } | Self::Turn { attitude } | Self::Weld { attitude, .. } => Some(attitude),
@@ -206,6 +217,7 @@ pub struct Programmer {
     spread: Option<Spread>,
     tilt: Option<Tilt>,
     table: Option<Follower>,
+    positioner: Option<Holder>,
     /// How the torch swings, where that is written as moves.
     weave: Option<Weave>,
 }
@@ -226,6 +238,7 @@ impl Programmer {
             spread: None,
             tilt: None,
             table: None,
+            positioner: None,
             weave: None,
         }
     }
@@ -236,7 +249,9 @@ impl Programmer {
         let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker() || other_layers;
         let (torch, restarts) = (Torch::of(weld), program.restart);
         let (tilt, table) = (Tilt::new(program), Follower::new(program));
-        let programmer = Self { torch, sets_feed, restarts, dry, tilt, table, ..Self::new(weld.travel.clearance) };
+        let positioner = Holder::new(program.positioner.as_ref());
+        let own = Self::new(weld.travel.clearance);
+        let programmer = Self { torch, sets_feed, restarts, dry, tilt, table, positioner, ..own };
         programmer.with_fit(program)
     }
 
@@ -301,6 +316,9 @@ impl Programmer {
         for (i, pass) in layer.passes.iter().enumerate().skip(first) {
             self.pass(i + 1, pass, &mut begun, &mut instructions);
         }
+        if let Some(positioner) = self.positioner.as_mut().filter(|_| self.placed) {
+            positioner.hold(&mut instructions);
+        }
         if self.dry {
             let kept = |i: &Instruction| {
                 let places = matches!(i, Instruction::PassStart { .. } | Instruction::Above | Instruction::PassEnd);
@@ -341,7 +359,7 @@ impl Programmer {
         let lean = |i: usize| leans.get(i).copied().unwrap_or_default();
         let places = || moves.iter().map(|(at, _)| *at).collect::<Vec<_>>();
         let turned = self.table.as_mut().map(|table| table.begin(&places()));
-        let table = turned.map(|turned| turned.angle);
+        let held = turned.map(|turned| Held::on_table(turned.angle));
         let begins = self.torch.at().is_none();
         let lit = self.torch.lit();
         let Begun { transfer, pause } = std::mem::take(begun);
@@ -353,7 +371,7 @@ impl Programmer {
         let down = legs.pop();
         let mut legs = legs.into_iter();
         if !lit.before {
-            let attitude = Attitude { lean: lean(0), table, ..Attitude::default() };
+            let attitude = Attitude { lean: lean(0), held, ..Attitude::default() };
             out.push(Instruction::PassStart { pass: number, above, attitude });
         }
         pauses.into_iter().flatten().for_each(|pause| self.pause(pause, out));
@@ -372,8 +390,8 @@ impl Programmer {
         for (i, &Stretch { end, to, circle, speed }) in pieces.iter().enumerate() {
             self.set_feed(self.torch.feed_at(moves[end].1), out);
             let length = circle.map_or(from.distance(to), |circle| circle.length());
-            let table = self.table.as_mut().map(|table| table.follow(to, length));
-            let attitude = Attitude { lean: lean(end), table, ..Attitude::default() };
+            let held = self.table.as_mut().map(|table| Held::on_table(table.follow(to, length)));
+            let attitude = Attitude { lean: lean(end), held, ..Attitude::default() };
             out.push(Instruction::Weld { to, circle, speed, last: i + 1 == pieces.len(), attitude });
             from = to;
         }

@@ -16,6 +16,9 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// The frame in which it is given.
+    pub const IDENTITY: Self = Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
+
     /// `inner` is given in this frame; returns it in the frame in which this one is given.
     pub fn then(&self, inner: &Self) -> Self {
         Self { position: self.apply(inner.position), rotation: (self.rotation * inner.rotation).normalize() }

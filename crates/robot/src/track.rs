@@ -3,7 +3,7 @@
 use crate::{Frame, part_from_tool};
 use bead_plan::layer::Layer;
 use bead_program::program::{Attitude, Instruction, LayerProgram, Programmer};
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Borrow;
 
@@ -25,7 +25,7 @@ pub struct Stop {
     pub seconds: f64,
     /// Whether the arc burns on the way to this stop.
     pub arc: bool,
-    /// The attitude of torch and table there.
+    /// The attitude of torch and part there.
     #[serde(skip)]
     pub attitude: Attitude,
     /// Whether it lies on the part, or on the move from or to home.
@@ -33,18 +33,17 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// The tool here, turned by `angle` (°) about the torch's axis, in the part's space as it lies while a table that turns
-    /// during the program is at 0.
+    /// The tool here, turned by `angle` (°) about the torch's axis, in the part's space as it lies while what turns it during the
+    /// program is at 0.
     pub fn tool(&self, angle: f64) -> Frame {
         let upright = part_from_tool(self.at, angle);
         let leaning = Frame { rotation: self.attitude.rotation() * upright.rotation, ..upright };
         self.turned_table().then(&leaning)
     }
 
-    /// Where the part lies with the table as it is here.
+    /// Where the part lies as a table or a positioner holds it here.
     pub fn turned_table(&self) -> Frame {
-        let angle = self.attitude.table.unwrap_or(0.0).to_radians();
-        Frame { position: DVec3::ZERO, rotation: DQuat::from_rotation_z(angle) }
+        self.attitude.held.map_or(Frame::IDENTITY, |held| Frame { position: held.shift, rotation: held.turn })
     }
 }
 

@@ -19,6 +19,7 @@ mod outside;
 mod overfill;
 mod overhang;
 mod points;
+mod positioner_speed;
 mod program_size;
 mod rehearsal;
 mod retraced;
@@ -27,6 +28,7 @@ mod short_pass;
 mod speed_window;
 mod stacked_starts;
 mod towers;
+mod turned;
 mod void;
 mod wire_balance;
 
@@ -48,7 +50,7 @@ use std::borrow::Borrow;
 use std::collections::BTreeSet;
 
 /// The checks.
-pub const CHECKS: [Check; 25] = [
+pub const CHECKS: [Check; 26] = [
     points::CHECK,
     layers::CHECK,
     air::CHECK,
@@ -57,6 +59,7 @@ pub const CHECKS: [Check; 25] = [
     clearance::CHECK,
     low_travel::CHECK,
     off_level::CHECK,
+    positioner_speed::CHECK,
     short_pass::CHECK,
     short_arc::CHECK,
     speed_window::CHECK,

@@ -154,7 +154,7 @@ fn wanted(layers: &[Layer], profile: &Profile, woven: bool) -> Vec<Vec<(DVec3, D
         (Vec::<Vec<_>>::new(), DVec3::ZERO, beadwright::program::Attitude::default());
     for instruction in layers.iter().flat_map(|layer| programmer.layer(layer).instructions) {
         attitude = instruction.attitude().unwrap_or(attitude);
-        let stand = |at| (at, attitude.rotation() * down, attitude.table);
+        let stand = |at| (at, attitude.rotation() * down, attitude.held.map(|held| held.angles[0]));
         match instruction {
             Instruction::ArcOn { .. } => welds.push(vec![stand(at)]),
             Instruction::Weld { to, .. } => welds.last_mut().unwrap().push(stand(to)),

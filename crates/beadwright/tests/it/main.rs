@@ -60,6 +60,7 @@ mod page_colours;
 mod part;
 mod parts;
 mod plan;
+mod positioner;
 mod preform;
 mod process_layers;
 mod profile;

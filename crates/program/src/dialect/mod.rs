@@ -41,8 +41,10 @@ pub struct Dialect {
     pub name: &'static str,
     /// The language as people write it; dialects of one language are read in the same way.
     pub language: &'static str,
-    /// Whether it can write the axes of a turn table and of a track under the robot.
-    pub external_axes: bool,
+    /// Whether it writes the linear axis of the robot.
+    pub linear_axis: bool,
+    /// Whether it writes the axes that turn the part.
+    pub table: bool,
     /// Whether a trimmed line can occur only in a program of this dialect; always false if another dialect reads its
     /// programs.
     typical: fn(&str) -> bool,

@@ -1,5 +1,6 @@
 //! The section `[program]` of a profile.
 
+use super::Positioner;
 use bead_plan::limit::{Broken, Limit, limits};
 use serde::{Deserialize, Serialize};
 
@@ -41,6 +42,10 @@ pub struct ProgramSettings {
     /// where it can follow them to their end, and at the end of its range it stops while the torch continues around it. Leave it
     /// out if the table turns endlessly.
     pub table_range: Option<[f64; 2]>,
+    /// One or two axes that turn the part so that layers lie level under the torch, and when they turn. KRL and RAPID write them, as
+    /// `table_angle`, which they replace. Leave it out if nothing turns the part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub positioner: Option<Positioner>,
     /// Which fraction of a wall's lean the torch adopts (work angle), 0 to 1; 0, the default, leaves it as in the robot's
     /// section. Robots only.
     pub follow_wall: f64,
@@ -75,6 +80,7 @@ impl Default for ProgramSettings {
             table_angle: None,
             table_side: None,
             table_range: None,
+            positioner: None,
             follow_wall: 0.0,
             max_work_angle: 30.0,
             travel_angle: 0.0,
@@ -92,9 +98,20 @@ impl ProgramSettings {
         self.linear_axis.is_some() || self.has_table()
     }
 
-    /// Whether there is a turn table under the part.
+    /// Whether there is a turn table or a positioner under the part.
     pub fn has_table(&self) -> bool {
-        self.table_angle.is_some() || self.table_side.is_some()
+        self.turning_axes() > 0
+    }
+
+    /// Number of the axes that turn the part.
+    pub fn turning_axes(&self) -> usize {
+        let table = usize::from(self.table_angle.is_some() || self.table_side.is_some());
+        self.positioner.as_ref().map_or(table, Positioner::count)
+    }
+
+    /// The angles of the axes that turn the part before they first turn, °; `None` where there are none.
+    pub fn first_angles(&self) -> Option<[f64; 2]> {
+        self.has_table().then(|| [self.table_angle.unwrap_or(0.0), 0.0])
     }
 
     /// Whether the torch leans differently from what the robot's section says.
@@ -104,7 +121,7 @@ impl ProgramSettings {
 
     /// The limits of the numbers; some depend on the bead width `w`, mm.
     pub fn limits(&self, w: f64) -> Vec<Limit> {
-        limits! {
+        let mut limits = limits! {
             "program.chord_tolerance": self.chord_tolerance, 0.0, 0.5 * w, "mm (at most half a bead width)",
                 "rounding alone takes 0.015 mm; more than half a bead width would change the part";
             "program.speed_tolerance": self.speed_tolerance, 0.0, 0.3, "(fraction of the speed)",
@@ -120,7 +137,9 @@ impl ProgramSettings {
             "program.max_work_angle": self.max_work_angle, 0.0, 45.0, "°", "the gas does not cover the metal at a greater lean";
             "program.max_off_level": self.max_off_level, 0.0, 180.0, "°", "180° is overhead";
             "program.travel_angle": self.travel_angle, -30.0, 30.0, "°", "the gas does not cover the metal at a greater lean";
-        }
+        };
+        limits.extend(self.positioner.iter().flat_map(Positioner::limits));
+        limits
     }
 
     /// Values that do not fit together.
@@ -133,6 +152,17 @@ impl ProgramSettings {
                 value: format!("{side}"),
                 reason: reason.to_owned(),
             });
+        }
+        if let Some(positioner) = &self.positioner {
+            if self.table_angle.is_some() || self.table_side.is_some() {
+                let reason =
+                    "a table (table_angle, table_side) is an axis of the positioner: remove the key of the table.";
+                let (key, value) = ("program.positioner".to_owned(), format!("{} axes", positioner.count()));
+                return Some(Broken { key, value, reason: reason.to_owned() });
+            }
+            if let Some(broken) = positioner.broken() {
+                return Some(broken);
+            }
         }
         if let Some([low, high]) = self.table_range.filter(|[low, high]| !(low + 360.0 <= *high && high - low < 1e5)) {
             let reason = "the least angle comes first, and the table must turn by at least 360°.".to_owned();

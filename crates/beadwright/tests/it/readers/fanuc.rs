@@ -38,7 +38,10 @@ impl Reader<'_> {
         let (lines, positions) = rest.split_once("/POS\r\n").unwrap();
         let comment = head.split("COMMENT = \"").nth(1).unwrap().split('"').next().unwrap();
         assert!(comment.len() <= 16, "{comment}");
-        let positions = read_positions(positions.strip_suffix("/END\r\n").unwrap());
+        // What moves a table has its motion group in every point and on every line of motion.
+        let coordinated = head.contains("DEFAULT_GROUP = 1,1,*,*,*;");
+        assert!(coordinated || head.contains("DEFAULT_GROUP = 1,*,*,*,*;"), "{head}");
+        let positions = read_positions(positions.strip_suffix("/END\r\n").unwrap(), coordinated);
         // An arc's second position goes on on the next line.
         let lines = lines.replace("\r\n    :", "");
         let (mut used, mut statements) = (0, Vec::new());
@@ -52,7 +55,11 @@ impl Reader<'_> {
             at = match self.jump(statements[at]) {
                 Some(label) => at + statements[at..].iter().position(|s| *s == label).expect("the label comes behind"),
                 None => {
-                    self.statement(statements[at], &positions, &mut used);
+                    let statement = statements[at];
+                    if statement.starts_with("L ") || statement.starts_with("C ") {
+                        assert_eq!(statement.contains(" COORD"), coordinated, "{statement}");
+                    }
+                    self.statement(&statement.replace(" COORD", ""), &positions, &mut used);
                     at + 1
                 }
             };
@@ -149,23 +156,27 @@ fn mm_per_second(text: &str) -> f64 {
     speed
 }
 
-fn read_positions(text: &str) -> Vec<Position> {
+fn read_positions(text: &str, coordinated: bool) -> Vec<Position> {
     let blocks: Vec<&str> = text.split("};\r\n").filter(|b| !b.is_empty()).collect();
     let read = |(i, block): (usize, &&str)| {
         assert!(block.starts_with(&format!("P[{}]{{\r\n   GP1:\r\n    UF : 1, UT : 1,", i + 1)), "{block}");
-        let value = |axis: &str, unit: &str| -> Option<f64> {
+        let (block, second) = block.split_once("   GP2:\r\n    UF : 1, UT : 1,\r\n").unwrap_or((block, ""));
+        assert_eq!(!second.is_empty(), coordinated, "{block}");
+        let find = |block: &str, axis: &str, unit: &str| -> Option<f64> {
             let field = block.split([',', '\n']).find(|f| f.trim().starts_with(&format!("{axis} =")))?;
             let number = field.split('=').nth(1)?.trim().strip_suffix(unit)?.trim();
             assert!(number.contains('.') && number != "-0.000");
             Some(number.parse().unwrap())
         };
+        let value = |axis: &str, unit: &str| find(block, axis, unit);
         if ["J1", "J2", "J3", "J4", "J5", "J6"].iter().all(|axis| value(axis, "deg").is_some()) {
             return Position::Joints;
         }
         assert!(block.contains("CONFIG : 'N U T, 0, 0, 0',"));
         let [w, p, r] = ["W", "P", "R"].map(|axis| value(axis, "deg").unwrap());
         let at = ["X", "Y", "Z"].map(|axis| value(axis, "mm").unwrap());
-        Position::Pose(Stand { at, tool: euler(r, p, w), axes: [None; 2] })
+        let axes = ["J1", "J2"].map(|axis| find(second, axis, "deg"));
+        Position::Pose(Stand { at, tool: euler(r, p, w), axes })
     };
     blocks.iter().enumerate().map(read).collect()
 }

@@ -89,6 +89,8 @@ pub struct Weld {
     pub tools: Vec<DQuat>,
     /// How far the table has turned at each point, °.
     pub turns: Vec<f64>,
+    /// The axes beside the robot's at each point, as far as they are stated, °.
+    pub axes: Vec<[Option<f64>; 2]>,
     /// Speeds of the moves, mm/s.
     pub speeds: Vec<f64>,
 }
@@ -162,6 +164,7 @@ impl Machine {
         weld.points.push((back * at).to_array());
         weld.tools.push(back * stand.tool);
         weld.turns.push(turn);
+        weld.axes.push(stand.axes);
         weld.speeds.extend(speed);
     }
 

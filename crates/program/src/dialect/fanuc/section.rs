@@ -3,7 +3,7 @@
 use super::write::FanucTp;
 use crate::dialect::writing::needs;
 use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
 use crate::program::ProgramSettings;
 use bead_plan::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
@@ -73,10 +73,18 @@ pub struct Fanuc {
     /// Position register that holds the height to be added to a layer, for `program.layer_offsets`; default 90.
     #[serde(default = "ninety")]
     pub offset_register: u32,
+    /// Motion group of what turns the part, 2 to 5: the leader of the pair that is coordinated on the controller. The user frame
+    /// is then that of the pair. Needed for `program.positioner`, `program.table_angle` and `program.table_side`.
+    #[serde(default)]
+    pub table_group: Option<u32>,
     /// Lines at other places of the program; default none.
     #[serde(default)]
     pub hooks: Hooks,
 }
+
+/// How the controller knows what turns the part.
+const TABLE: &str = "It is the motion group of the table or positioner, such as 2: the leader of the coordinated pair, whose frame the \
+                     user frame is.";
 
 fn ninety() -> u32 {
     90
@@ -91,6 +99,7 @@ impl Section for Fanuc {
             "fanuc.continuity": self.continuity.into(), 0.0, 100.0, "(CNT)", CONTROLLER;
             "fanuc.restart_register": self.restart_register.into(), 1.0, 1500.0, "(register)", CONTROLLER;
             "fanuc.offset_register": self.offset_register.into(), 1.0, 100.0, "(position register)", CONTROLLER;
+            "fanuc.table_group": self.table_group.unwrap_or(2).into(), 2.0, 5.0, "(motion group)", CONTROLLER;
             "fanuc.max_points": self.max_points as f64, 10.0, 3000.0, "moves per program",
                 "larger programs do not load into the controller";
         };
@@ -121,6 +130,10 @@ impl Section for Fanuc {
 
     fn supports(&self, _extra: Extra) -> bool {
         true
+    }
+
+    fn table(&self) -> Option<Table> {
+        Some(Table { key: "fanuc.table_group", known: self.table_group.is_some(), what: TABLE })
     }
 
     fn hooks(&self) -> Option<&Hooks> {

@@ -33,6 +33,8 @@ pub(super) struct FanucTp {
     weave: Option<Weave>,
     /// W, P, R of the torch, °.
     orientation: [f64; 3],
+    /// Angles of what turns the part, °, as many as it has axes.
+    turned: Option<[f64; 2]>,
     main: Program,
     /// Labels where open branches end.
     open: Vec<usize>,
@@ -63,22 +65,24 @@ impl Program {
         self.labels
     }
 
-    fn position(&mut self, head: &str, axes: [(&str, String); 6]) -> usize {
+    /// `turning` is the line of what turns the part, if anything does.
+    fn position(&mut self, head: &str, axes: [(&str, String); 6], turning: &str) -> usize {
         self.points += 1;
         let _ = write!(self.positions, "P[{}]{{\r\n   GP1:\r\n    {head}\r\n", self.points);
         for (i, (axis, value)) in axes.iter().enumerate() {
             let end = ["", ",", ",\r\n"][if i == 5 { 0 } else { 1 + usize::from(i == 2) }];
             let _ = write!(self.positions, "{}{axis} = {value}{end}", if i % 3 == 0 { "    " } else { " " });
         }
-        self.positions.push_str("\r\n};\r\n");
+        let _ = write!(self.positions, "\r\n{turning}}};\r\n");
         self.points
     }
 
-    fn text(&self, name: &str, comment: &str) -> String {
+    /// `groups` are the motion groups of its points.
+    fn text(&self, name: &str, comment: &str, groups: &str) -> String {
         let comment = &comment[..comment.len().min(MAX_COMMENT)];
         format!(
             "/PROG  {name}\r\n/ATTR\r\nOWNER = MNEDITOR;\r\nCOMMENT = \"{comment}\";\r\nLINE_COUNT = {};\r\n\
-             PROTECT = READ_WRITE;\r\nDEFAULT_GROUP = 1,*,*,*,*;\r\n/MN\r\n{}/POS\r\n{}/END\r\n",
+             PROTECT = READ_WRITE;\r\nDEFAULT_GROUP = {groups};\r\n/MN\r\n{}/POS\r\n{}/END\r\n",
             self.count, self.lines, self.positions
         )
     }
@@ -90,7 +94,33 @@ impl FanucTp {
         let comment = ascii(&job.part).replace('"', "_");
         let frame = Frame { comment, ..Frame::new(job, upper_name(&job.part), MAX_REMARK, &fanuc) };
         let (orientation, main) = (fanuc.orientation, Program::default());
-        Self { frame, fanuc, weave: job.weave(), orientation, main, open: Vec::new(), weaving: None }
+        let (weave, turned) = (job.weave(), job.program.first_angles());
+        Self { frame, fanuc, weave, orientation, turned, main, open: Vec::new(), weaving: None }
+    }
+
+    /// The motion group that turns the part, where one does.
+    fn table(&self) -> Option<u32> {
+        self.fanuc.table_group.filter(|_| self.frame.program.has_table())
+    }
+
+    /// The motion groups of a program's points.
+    fn groups(&self) -> String {
+        let moved = |group: u32| if group == 1 || Some(group) == self.table() { "1" } else { "*" };
+        (1..=5).map(moved).collect::<Vec<_>>().join(",")
+    }
+
+    /// What of a position turns the part.
+    fn turning(&self, angles: Option<[f64; 2]>) -> String {
+        let Some((group, angles)) = self.table().zip(angles) else { return String::new() };
+        let axes = angles.iter().take(self.frame.program.turning_axes()).zip(1..);
+        let axes: Vec<String> = axes.map(|(angle, k)| format!("J{k} = {:>9} deg", fixed(*angle, 4))).collect();
+        let Fanuc { user_frame, tool_frame, .. } = &self.fanuc;
+        format!("   GP{group}:\r\n    UF : {user_frame}, UT : {tool_frame},\r\n    {}\r\n", axes.join(", "))
+    }
+
+    /// What follows a motion along a line: that both groups move as one.
+    fn together(&self) -> &'static str {
+        if self.table().is_some() { " COORD" } else { "" }
     }
 
     /// Swings the torch so that a period has the same length at any speed (mm/s).
@@ -133,14 +163,14 @@ impl FanucTp {
         let head = format!("UF : {user_frame}, UT : {tool_frame}, CONFIG : '{configuration}',");
         let (mm, deg) = (|v: f64| format!("{:>9} mm", fixed(v, 3)), |v: &f64| format!("{:>9} deg", fixed(*v, 4)));
         let axes = [("X", mm(to.x)), ("Y", mm(to.y)), ("Z", mm(to.z)), ("W", deg(w)), ("P", deg(p)), ("R", deg(r))];
-        program.position(&head, axes)
+        program.position(&head, axes, &self.turning(self.turned))
     }
 
     fn home(&self, program: &mut Program) {
         let names = ["J1", "J2", "J3", "J4", "J5", "J6"];
         let axes = std::array::from_fn(|i| (names[i], format!("{:>9} deg", fixed(self.fanuc.home[i], 3))));
         let head = format!("UF : {}, UT : {},", self.fanuc.user_frame, self.fanuc.tool_frame);
-        let number = program.position(&head, axes);
+        let number = program.position(&head, axes, &self.turning(self.frame.program.first_angles()));
         program.line(&format!("J P[{number}] {}% FINE", fixed(self.fanuc.home_speed, 0)));
     }
 
@@ -194,7 +224,7 @@ impl Syntax for FanucTp {
         frame::end(self, &mut main);
         self.home(&mut main);
         let Frame { name, comment, .. } = &self.frame;
-        vec![Chunk { file: format!("{name}.ls"), text: main.text(name, comment) }]
+        vec![Chunk { file: format!("{name}.ls"), text: main.text(name, comment, &self.groups()) }]
     }
 
     fn part(&mut self, part: &Part, moves: &[Instruction]) -> Vec<Chunk> {
@@ -206,7 +236,7 @@ impl Syntax for FanucTp {
         }
         frame::body(self, &mut program, part, moves);
         let name = self.name_of(part);
-        vec![Chunk { file: format!("{name}.ls"), text: program.text(&name, &format!("LAYER {layer}")) }]
+        vec![Chunk { file: format!("{name}.ls"), text: program.text(&name, &format!("LAYER {layer}"), &self.groups()) }]
     }
 
     fn call(&mut self, part: &Part) -> Vec<Chunk> {
@@ -240,6 +270,7 @@ impl Syntax for FanucTp {
 
     fn stand(&mut self, attitude: Attitude) {
         self.orientation = orientation::xyz(self.fanuc.orientation, Turn::Attitude(attitude));
+        self.turned = attitude.held.map(|held| held.angles).or(self.turned);
     }
 
     fn approach(&mut self, program: &mut Program, to: DVec3) {
@@ -251,7 +282,7 @@ impl Syntax for FanucTp {
         let number = self.pose(program, to);
         // L takes at most 2000 mm/sec.
         let speed = fixed(self.frame.travel_speed.clamp(0.1, 2000.0), 1);
-        program.line(&format!("L P[{number}] {speed}mm/sec FINE{}", self.offset_word()));
+        program.line(&format!("L P[{number}] {speed}mm/sec FINE{}{}", self.together(), self.offset_word()));
     }
 
     fn pass(&mut self, program: &mut Program, pass: usize, kind: PassKind) {
@@ -269,7 +300,8 @@ impl Syntax for FanucTp {
         let via = piece.circle.map(|circle| self.pose(program, circle.via));
         let number = self.pose(program, piece.to);
         let end = if piece.last { "FINE".to_owned() } else { format!("CNT{}", self.fanuc.continuity) };
-        let end = format!("P[{number}] {} {end}{}", self.speed(piece.speed), self.offset_word());
+        let (speed, together) = (self.speed(piece.speed), self.together());
+        let end = format!("P[{number}] {speed} {end}{together}{}", self.offset_word());
         match via {
             Some(via) => program.line(&format!("C P[{via}]\r\n    :  {end}")),
             None => program.line(&format!("L {end}")),

@@ -16,4 +16,4 @@ use super::Dialect;
 
 /// The row in the table of dialects.
 pub const DIALECT: Dialect =
-    Dialect { name: "krl", language: "KRL", external_axes: true, typical: read::typical, read: read::read };
+    Dialect { name: "krl", language: "KRL", linear_axis: true, table: true, typical: read::typical, read: read::read };

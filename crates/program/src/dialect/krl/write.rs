@@ -27,8 +27,8 @@ pub(super) struct KukaKrl {
     frame: Frame,
     krl: Krl,
     weave: Option<Weave>,
-    /// Angle of the turn table, °.
-    table: Option<f64>,
+    /// Angles of what turns the part, °.
+    table: Option<[f64; 2]>,
     /// A, B, C of the torch, °.
     orientation: [f64; 3],
     /// Index of the layer.
@@ -44,7 +44,7 @@ impl KukaKrl {
     pub(super) fn new(job: &Job<'_>, krl: Krl) -> Self {
         let volumes = Some(Volumes::new(krl.max_megabytes, "KRL", "src"));
         let frame = Frame { volumes, ..Frame::new(job, upper_name(&job.part), MAX_COMMENT, &krl) };
-        let table = job.program.table_angle.or(job.program.table_side.map(|_| 0.0));
+        let table = job.program.first_angles();
         let orientation = krl.orientation;
         Self { frame, krl, weave: job.weave.cloned(), table, orientation, layer: 0, speed: 0.0, forms: None }
     }
@@ -69,12 +69,13 @@ impl KukaKrl {
         }
     }
 
-    /// The axes other than the robot's with their numbers: the linear axis (mm) and the turn table (°).
-    fn external(&self, table: Option<f64>) -> impl Iterator<Item = (u32, f64)> + use<> {
+    /// The axes other than the robot's with their numbers: the linear axis (mm) and those that turn the part (°).
+    fn external(&self, table: Option<[f64; 2]>) -> impl Iterator<Item = (u32, f64)> + use<> {
         let linear = self.frame.program.linear_axis.map(|place| (1, place));
         let free = if linear.is_some() { 2 } else { 1 };
-        let table = table.map(|angle| (self.krl.table_axis.unwrap_or(free), angle));
-        linear.into_iter().chain(table)
+        let (first, count) = (self.krl.table_axis.unwrap_or(free), self.frame.program.turning_axes());
+        let turning = table.into_iter().flatten().take(count);
+        linear.into_iter().chain((first..).zip(turning))
     }
 
     fn set_speed(&mut self, text: &mut String, speed: f64) {
@@ -197,12 +198,11 @@ impl KukaKrl {
         text.push('}');
     }
 
-    /// The axes at home; those other than the robot's are as in the program, a table that turns at 0, unless the profile says
+    /// The axes at home; those other than the robot's are as in the program, what turns the part at 0, unless the profile says
     /// otherwise.
     fn home(&self) -> String {
-        let program = &self.frame.program;
-        let table = program.table_angle.or(program.table_side.map(|_| 0.0));
-        let missing = self.external(table).filter(|(number, _)| !self.krl.home.contains(&format!("E{number} ")));
+        let first = self.frame.program.first_angles();
+        let missing = self.external(first).filter(|(number, _)| !self.krl.home.contains(&format!("E{number} ")));
         let missing: String = missing.map(|(number, value)| format!(",E{number} {}", fixed(value, 4))).collect();
         format!("{}{missing}", self.krl.home)
     }
@@ -336,7 +336,7 @@ impl Syntax for KukaKrl {
 
     fn stand(&mut self, attitude: Attitude) {
         self.orientation = orientation::zyx(self.krl.orientation, Turn::Attitude(attitude));
-        self.table = attitude.table.or(self.table);
+        self.table = attitude.held.map(|held| held.angles).or(self.table);
     }
 
     fn by_package(&mut self, text: &mut String, moves: &[Instruction], at: usize) -> bool {

@@ -11,7 +11,8 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "marlin",
     language: "G-code",
-    external_axes: false,
+    linear_axis: false,
+    table: false,
     // A printer's file is recognised as G-code.
     typical: |_| false,
     read: super::gcode::DIALECT.read,

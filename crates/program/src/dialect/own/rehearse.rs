@@ -18,7 +18,7 @@ pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
     };
     if job.program.external_axes() {
         let reason = "a dialect of your own writes no external axes (program.linear_axis, program.table_angle, \
-                      program.table_side). Remove the key, and move the axis by hand.";
+                      program.table_side, program.positioner). Remove the key, and move the axis by hand.";
         return refuse(SETTINGS, reason.to_owned());
     }
     if job.program.tilts() {

@@ -6,15 +6,14 @@ use crate::program::{ProgramSettings, Weave};
 use bead_plan::process::Process;
 use glam::DVec3;
 
-/// The external axes of a target: a linear axis (mm), and a turn table (°) in its place, as far as there are any.
-pub(super) fn external_axes(program: &ProgramSettings, table: Option<f64>, rapid: &Rapid) -> String {
+/// The external axes of a target: a linear axis (mm), and those that turn the part (°) in their places, as far as there are any.
+pub(super) fn external_axes(program: &ProgramSettings, turned: Option<[f64; 2]>, rapid: &Rapid) -> String {
     let mut axes = [const { None }; 6];
     axes[0] = program.linear_axis;
     let free = usize::from(program.linear_axis.is_some());
     let place = rapid.table_axis.map_or(free, |axis| axis as usize - 1);
-    if let Some(axis) = axes.get_mut(place).filter(|_| table.is_some()) {
-        *axis = table;
-    }
+    let turning = turned.into_iter().flatten().take(program.turning_axes());
+    axes.iter_mut().skip(place).zip(turning).for_each(|(axis, angle)| *axis = Some(angle));
     let texts = axes.map(|value| value.map_or_else(|| "9E+09".to_owned(), |value| fixed(value, 4)));
     format!("[{}]", texts.join(","))
 }

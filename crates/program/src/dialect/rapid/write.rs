@@ -50,7 +50,7 @@ impl AbbRapid {
         let name = names::module_name(&job.part, 3, [&rapid.tool, &rapid.wobj]);
         let rapid = with_ends(rapid, job);
         let orientation = data::quaternion(&rapid.orientation);
-        let axes = data::external_axes(job.program, job.program.table_angle, &rapid);
+        let axes = data::external_axes(job.program, job.program.first_angles(), &rapid);
         let frame = Frame::new(job, name, MAX_COMMENT, &rapid);
         Self { frame, rapid, weave: job.weave.cloned(), orientation, axes, speeds: Speeds::new() }
     }
@@ -225,8 +225,7 @@ impl AbbRapid {
             text.push_str("  ! mm to be added to the height of each layer\r\n");
             text.push_str(&format!("  PERS num nDz{{{layers}}}:=[{zeros}];\r\n"));
         }
-        let standing = program.table_angle.or(program.table_side.map(|_| 0.0));
-        let (arc, home) = (self.with_arc(), data::external_axes(program, standing, &self.rapid));
+        let (arc, home) = (self.with_arc(), data::external_axes(program, program.first_angles(), &self.rapid));
         for line in data::declarations(process, *travel_speed, &self.rapid, arc, self.table(), &home) {
             text.push_str(&format!("  {line}\r\n"));
         }
@@ -337,8 +336,8 @@ impl Syntax for AbbRapid {
 
     fn stand(&mut self, attitude: Attitude) {
         self.orientation = data::quaternion(&orientation::quaternion(self.rapid.orientation, Turn::Attitude(attitude)));
-        if attitude.table.is_some() {
-            self.axes = data::external_axes(&self.frame.program, attitude.table, &self.rapid);
+        if let Some(held) = attitude.held {
+            self.axes = data::external_axes(&self.frame.program, Some(held.angles), &self.rapid);
         }
     }
 

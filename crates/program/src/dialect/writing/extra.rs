@@ -63,9 +63,9 @@ fn beside_chart(job: &Job<'_>) -> Option<(&'static str, &'static str)> {
     let (weld, program) = (&job.weld, job.program);
     let pairs = [
         (
-            program.has_table(),
+            program.table_angle.is_some() || program.table_side.is_some(),
             "layers.chart together with program.table_angle or program.table_side",
-            "The table would turn by angles on the unrolled layers: leave it out.",
+            "The table would turn by angles on the unrolled layers: leave it out; program.positioner turns the part with its layers.",
         ),
         (
             program.layer_offsets,

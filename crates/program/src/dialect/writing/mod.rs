@@ -20,7 +20,7 @@ pub use placeholders::PLACEHOLDERS;
 pub(super) use placeholders::Values;
 
 use super::own::OwnError;
-use super::{ALL, Sections, find, names};
+use super::{ALL, Dialect, Sections, find, names};
 use crate::program::{LayerProgram, ProgramSettings, Programmer, Safety, Turns, Weave};
 use bead_plan::bead::Bead;
 use bead_plan::layer::{Extent, Layer};
@@ -185,20 +185,45 @@ pub enum DialectError {
         /// Length, width and height that the printer reaches, mm.
         bed: [f64; 3],
     },
-    /// The profile has external axes that the dialect does not write.
-    #[error(
-        "the post \"{0}\" writes no external axes (program.linear_axis, program.table_angle, program.table_side); {others} do. \
-         Remove the key, and move the axis by hand.",
-        others = with_axes().join(" and ")
-    )]
-    NoExternalAxes(&'static str),
+    /// The profile has an axis that the dialect does not write.
+    #[error("the post \"{dialect}\" does not write {key}; {others} do. Remove the key, and move the axis by hand.")]
+    NoAxis {
+        /// Name of the dialect.
+        dialect: &'static str,
+        /// The key of the axis.
+        key: &'static str,
+        /// The dialects that write it.
+        others: String,
+    },
     /// The user's own templates are broken, or write less than the job asks for.
     #[error(transparent)]
     Own(#[from] OwnError),
 }
 
-fn with_axes() -> Vec<&'static str> {
-    ALL.iter().filter(|dialect| dialect.external_axes).map(|dialect| dialect.name).collect()
+/// Refuses axes that a dialect does not write.
+fn check_axes(dialect: &'static Dialect, program: &ProgramSettings) -> Result<(), DialectError> {
+    let turning = turning_key(program);
+    let axes: [(Option<&'static str>, fn(&Dialect) -> bool); 2] = [
+        (program.linear_axis.map(|_| "program.linear_axis"), |dialect| dialect.linear_axis),
+        (turning, |dialect| dialect.table),
+    ];
+    for (key, writes) in axes {
+        if let Some(key) = key.filter(|_| !writes(dialect)) {
+            let names: Vec<&str> = ALL.iter().filter(|other| writes(other)).map(|other| other.name).collect();
+            return Err(DialectError::NoAxis { dialect: dialect.name, key, others: names.join(" and ") });
+        }
+    }
+    Ok(())
+}
+
+/// The key of what turns the part; `None` where nothing does.
+fn turning_key(program: &ProgramSettings) -> Option<&'static str> {
+    let keys = [
+        (program.positioner.is_some(), "program.positioner"),
+        (program.table_side.is_some(), "program.table_side"),
+        (program.table_angle.is_some(), "program.table_angle"),
+    ];
+    keys.into_iter().find(|(is_set, _)| *is_set).map(|(_, key)| key)
 }
 
 /// Begins a program in the dialect with this name.
@@ -210,11 +235,8 @@ pub fn writer(name: &str, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError
     let dialect = find(name).ok_or_else(|| DialectError::Unknown(name.to_owned()))?;
     let missing = || DialectError::NoSection { profile: job.profile.clone(), dialect: dialect.name };
     let section = job.sections.get(name).ok_or_else(missing)?;
-    if job.program.external_axes() && !dialect.external_axes {
-        return Err(DialectError::NoExternalAxes(dialect.name));
-    }
-    if let Some(table) = section.table().filter(|table| job.program.has_table() && !table.known) {
-        let why = if job.program.table_side.is_some() { "program.table_side" } else { "program.table_angle" };
+    check_axes(dialect, job.program)?;
+    if let (Some(table), Some(why)) = (section.table().filter(|table| !table.known), turning_key(job.program)) {
         let (profile, key, remedy) = (job.profile.clone(), table.key.to_owned(), table.what.to_owned());
         return Err(DialectError::NoKey { profile, key, why: why.to_owned(), remedy });
     }
