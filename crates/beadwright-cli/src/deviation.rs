@@ -37,6 +37,13 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+/// A plan that has less than this in common with a part is that of another part, or of one placed elsewhere.
+const ELSEWHERE: f64 = 0.5;
+
+/// How a part lies as it was planned.
+const PLACED: &str = "place the part as it was for the plan, with its --units, --scale, --turn, --centre, --shift, --lay-flat, --orient \
+                      and --onto.";
+
 /// What was compared with the part.
 struct Compared {
     /// What it is: the format of a scan, or a plan.
@@ -54,16 +61,20 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Deviation { figures, plate, doubts, .. } = deviation;
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let mut value =
-            serde_json::json!({ "format": format, "figures": figures, "plate": plate, "doubts": doubts });
+        let mut value = serde_json::json!({ "format": format, "figures": figures, "plate": plate, "doubts": doubts });
         if let Some(built) = built {
             value["built"] = serde_json::json!(built);
             value["built"]["agreement"] = built.agreement().into();
         }
         return Ok(writeln!(out, "{value:#}")?);
     }
-    for doubt in &doubts {
-        writeln!(out, "warning: {doubt}{}", remedy(doubt))?;
+    if let Some(built) = built.as_ref().filter(|built| built.agreement() < ELSEWHERE) {
+        let share = 100.0 * built.agreement();
+        writeln!(out, "warning: plan and part have only {share:.1} % in common: {PLACED}")?;
+    } else {
+        for doubt in &doubts {
+            writeln!(out, "warning: {doubt}{}", remedy(doubt))?;
+        }
     }
     let (scan, part) = (arguments.scan.display(), arguments.model.model.display());
     writeln!(out, "{scan} against {part}: {format} of {} points", figures.points)?;
@@ -124,13 +135,14 @@ fn print_built(out: &mut impl Write, built: &AsBuilt) -> anyhow::Result<()> {
     let cubic = |volume: f64| volume / 1e3;
     writeln!(
         out,
-        "{:.1} % of both together is in common: {:.1} of {:.1} cm³ of the part hold metal, {:.1} cm³ lie outside it (counted in \
-         voxels of {:.2} mm)",
+        "{:.1} % of both together is in common: beads take up {:.1} of {:.1} cm³ of the part, and {:.1} cm³ outside it (counted in \
+         voxels of {:.2} mm; {:.1} cm³ are laid)",
         100.0 * built.agreement(),
         cubic(built.common),
         cubic(built.part),
         cubic(built.metal - built.common),
-        built.step
+        built.step,
+        cubic(built.laid)
     )?;
     Ok(())
 }

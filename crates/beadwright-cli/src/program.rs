@@ -68,9 +68,16 @@ impl Source {
     }
 
     /// The profile that was asked for; if none was, that of the plan or the one that the program names.
+    ///
+    /// How the layers of a plan lie in space is always as in the plan.
     pub(crate) fn profile(&self, wanted: &Wanted) -> anyhow::Result<Profile> {
         if let Some(name) = &wanted.profile {
-            return profile::load(name, &wanted.set);
+            let mut profile = profile::load(name, &wanted.set)?;
+            if let Some(own) = self.plan().and_then(|plan| plan.profile.as_ref()) {
+                profile.layers.chart = own.layers.chart.clone();
+                profile.layers.bodies.clone_from(&own.layers.bodies);
+            }
+            return Ok(profile);
         }
         let plan = match &self.content {
             Content::Plan(plan) => plan,

@@ -7,6 +7,7 @@
 use crate::chart::{Chart, Sheet};
 use crate::deviation::{Deviation, DeviationError, deviation};
 use crate::layer::Layer;
+use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::pass::Segment;
 use crate::plan;
@@ -23,6 +24,8 @@ use serde::Serialize;
 const VOXELS: f64 = 4e6;
 /// whose edges are no shorter than this part of a layer's height.
 const FINEST: f64 = 0.5;
+/// Where in the corner of the box the first middle lies, as a part of a voxel's edge.
+const OFF: f64 = 0.381_966;
 /// The surface of the metal is found this accurately, as a part of a voxel's edge.
 const SURFACE: f64 = 1.0 / 64.0;
 
@@ -33,8 +36,10 @@ pub struct AsBuilt {
     pub step: f64,
     /// Volume of what is to be welded of the part, mm³.
     pub part: f64,
-    /// Volume of the metal, mm³.
+    /// Volume that beads take up, mm³: where they overlap or rise above their layer, less than the metal that is laid.
     pub metal: f64,
+    /// Volume of the metal that is laid, mm³.
+    pub laid: f64,
     /// Volume that both have in common, mm³.
     pub common: f64,
     /// How far the metal's surface lies from that of the part.
@@ -82,10 +87,13 @@ pub fn as_built(layers: &[Layer], profile: &Profile, part: &Mesh, task: &Task) -
         |counts: fn(&Voxel) -> bool| voxels.iter().filter(|voxel| counts(voxel)).count() as f64 * grid.step.powi(3);
     let points = grid.surface(&voxels, |p| metal.contains(p), task)?;
     let surface = deviation(part, &points, profile.fill.machining_allowance, task)?;
+    let mut metrics = Metrics::new(profile);
+    layers.iter().for_each(|layer| metrics.add(layer));
     Ok(AsBuilt {
         step: grid.step,
         part: volume(|voxel| voxel.part),
         metal: volume(|voxel| voxel.metal),
+        laid: metrics.deposited_volume_mm3,
         common: volume(|voxel| voxel.part && voxel.metal),
         surface,
     })
@@ -232,7 +240,8 @@ impl Grid {
         let size = high - low;
         let step = (size.element_product() / VOXELS).cbrt().max(FINEST * profile.layers.height);
         let counts = size.to_array().map(|size| (size / step).ceil().max(1.0) as usize);
-        Self { first: low + step / 2.0, step, counts }
+        // Faces of the part often lie on whole millimetres: no voxel's middle does.
+        Self { first: low + OFF * step, step, counts }
     }
 
     fn place(&self, [i, j, k]: [usize; 3]) -> DVec3 {

@@ -374,6 +374,11 @@ impl Subject<'_> {
         self.passes().filter(|(_, _, pass)| pass.kind != PassKind::Spot)
     }
 
+    /// Index of a layer in its body.
+    fn number_in_body(&self, layer: &Layer) -> usize {
+        layer.index - self.layers.first().map_or(0, |first| first.index)
+    }
+
     /// Time for which the torch welds a layer, s.
     fn seconds(&self, layer: &Layer) -> f64 {
         layer.passes.iter().map(|pass| pass.seconds(&self.profile.process)).sum()

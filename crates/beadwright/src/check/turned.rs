@@ -10,7 +10,7 @@ pub(super) struct Turned<'a> {
     pub(super) layer: &'a Layer,
     /// Index of the pass in its layer.
     pub(super) pass: usize,
-    /// Where the move ends, mm.
+    /// Where the move ends, on its layer, mm.
     pub(super) place: DVec3,
     /// How far the pool then leans, °.
     pub(super) off_level: f64,
@@ -23,6 +23,9 @@ pub(super) fn moves<'a>(subject: &'a Subject<'_>) -> Vec<Turned<'a>> {
     let (mut programmer, mut found) = (subject.profile.programmer(), Vec::new());
     for layer in &subject.layers {
         let (mut at, mut pass, mut before) = (DVec3::ZERO, 0, None);
+        let near = layer.passes.first().and_then(|pass| pass.start()).unwrap_or_default().truncate();
+        let sheet = subject.profile.layers.sheet(layer);
+        let on_layer = |p: DVec3| sheet.map_or(p, |sheet| sheet.coordinates(p, near));
         for instruction in programmer.layer(layer).instructions {
             match instruction {
                 Instruction::PassStart { pass: number, .. } => pass = number - 1,
@@ -32,7 +35,7 @@ pub(super) fn moves<'a>(subject: &'a Subject<'_>) -> Vec<Turned<'a>> {
                     let angles: [f64; 2] = before.unwrap_or(held.angles);
                     let rates = std::array::from_fn(|k| (held.angles[k] - angles[k]).abs() / seconds);
                     let off_level = (held.turn * attitude.layer * DVec3::Z).angle_between(DVec3::Z).to_degrees();
-                    found.push(Turned { layer, pass, place: to, off_level, rates });
+                    found.push(Turned { layer, pass, place: on_layer(to), off_level, rates });
                 }
                 _ => {}
             }

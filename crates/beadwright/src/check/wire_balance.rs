@@ -21,7 +21,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (settings, dot) = (profile.pace_settings(), profile.dot());
     let nominal = balance.warning().map(|text| CHECK.of_plan(text));
     let along = subject.passes().filter_map(|(layer, i, pass)| {
-        let paces = settings.in_layer(layer.index, layer.height);
+        let paces = settings.in_layer(subject.number_in_body(layer), layer.height);
         // A wall takes the wire that fills its width over the rise of the layer.
         let rise = paces.wall_rise().filter(|_| pass.kind == PassKind::Wall);
         let fitting = |width: f64| match rise {

@@ -4,7 +4,7 @@
 use super::beside::{Beside, Watch};
 use super::charted::{self, Unrolled};
 use super::row::{NUMBERED_APART, Row};
-use super::support::Footing;
+use super::support::{Footing, Under};
 use super::warm::Warmth;
 use super::{Header, PlanError, Sink, Summary, plan_at, slabs_of, warm};
 use crate::chart::{Chart, warp};
@@ -50,7 +50,7 @@ pub(super) fn bodies_into<S: Sink + Send>(
     let ready = owned.iter().map(|own| Ready::of(own, task)).collect::<Result<Vec<_>, _>>()?;
     let bounds = ready.iter().map(|ready| ready.part().bounds()).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
     let (low, high) = bounds.unwrap_or_default();
-    let extent = Extent { layers: ready.iter().map(|ready| ready.layers).sum(), low, high };
+    let extent = Extent { layers: ready.iter().map(|ready| ready.slabs.len()).sum(), low, high };
     let strategy = profile.fill.strategy.to_string();
     sink.begin(&Header { part: name.to_owned(), profile: profile.name.clone(), strategy, extent })
         .map_err(PlanError::Sink)?;
@@ -61,10 +61,15 @@ pub(super) fn bodies_into<S: Sink + Send>(
     for (k, (own, ready)) in owned.iter().zip(&ready).enumerate() {
         row.body = k;
         let under = owned[..k].iter().map(|other| &other.mesh).chain(onto);
-        let footing = if k == 0 && onto.is_none() { Footing::Plate } else { own.footing(under, task)? };
+        let footing = if k == 0 && onto.is_none() {
+            ready.in_order(&owned[1..], task)?;
+            Footing::Plate
+        } else {
+            ready.footing(under, task)?
+        };
         let mut watch = Watch::new(&mut row, &mut beside, own.body, &own.profile);
         let summary = ready.plan(footing, task, &mut watch)?;
-        row.finish(&own.body.name, ready.layers, &summary);
+        row.finish(&own.body.name, ready.slabs.len(), &summary);
         beside.finish(&own.body.name, &own.mesh);
     }
     let mut summary = row.summary(&format!("The part is welded as {} bodies, one after another", owned.len()));
@@ -116,18 +121,6 @@ impl Own<'_> {
             other => other,
         }
     }
-
-    /// What its first layer lies on.
-    fn footing<'m, E>(&self, below: impl Iterator<Item = &'m Mesh>, task: &Task) -> Result<Footing, PlanError<E>> {
-        let chart = &self.profile.layers.chart;
-        if self.body.on_stock || chart.is_level() {
-            return Ok(Footing::Plate);
-        }
-        let metal = below.map(|mesh| under(chart, mesh, &self.profile, task));
-        let metal = metal.collect::<Result<Vec<_>, _>>()?;
-        let metal = metal.into_iter().fold(Region::default(), |all, part| all.union(&part));
-        Ok(Footing::Metal(metal.into_polygons()))
-    }
 }
 
 /// A body in the coordinates of its chart, ready to be planned.
@@ -135,8 +128,7 @@ struct Ready<'a> {
     own: &'a Own<'a>,
     unrolled: Option<Unrolled<'a>>,
     warmth: Warmth,
-    /// Number of layers.
-    layers: usize,
+    slabs: Vec<Slab>,
 }
 
 impl<'a> Ready<'a> {
@@ -145,14 +137,57 @@ impl<'a> Ready<'a> {
             return Err(own.wrong("nothing of the part lies above all planes of its within."));
         }
         let unrolled = Unrolled::of(own.part(), &own.profile, task).map_err(|error| own.named(error))?;
-        let mut ready = Self { own, unrolled, warmth: Warmth::default(), layers: 0 };
+        let mut ready = Self { own, unrolled, warmth: Warmth::default(), slabs: Vec::new() };
         ready.warmth = warm::predicted(ready.part(), &own.profile, task)?;
-        ready.layers = slabs_of(&ready.warmth, ready.part(), &own.profile, task)?.len();
+        ready.slabs = slabs_of(&ready.warmth, ready.part(), &own.profile, task)?;
         Ok(ready)
     }
 
     fn part(&self) -> PartRef<'_> {
         self.unrolled.as_ref().map_or(self.own.part(), Unrolled::part)
+    }
+
+    /// What its layers lie on besides one another.
+    fn footing<'m, E>(&self, others: impl Iterator<Item = &'m Mesh>, task: &Task) -> Result<Footing, PlanError<E>> {
+        let Own { body, profile, .. } = self.own;
+        if body.on_stock || profile.layers.chart.is_level() {
+            return Ok(Footing::Plate);
+        }
+        let mut under: Vec<Under> = Vec::new();
+        for mesh in others {
+            let of_mesh = under_layers(mesh, &self.slabs, profile, task)?;
+            if under.is_empty() {
+                under = of_mesh;
+            } else {
+                let more = under.iter_mut().zip(of_mesh);
+                more.for_each(|(under, more)| under.outlines.extend(more.outlines));
+            }
+        }
+        Ok(Footing::Metal(under))
+    }
+
+    /// Refuses a body whose first layer lies on one that is welded after it.
+    fn in_order<E>(&self, later: &[Own<'_>], task: &Task) -> Result<(), PlanError<E>> {
+        let (Own { body, profile, .. }, PartRef::Mesh { mesh, .. }) = (self.own, self.part()) else { return Ok(()) };
+        let begins = |slab: &&Slab| slab.z > mesh.bounds().0.z;
+        let Some(first) = self.slabs.iter().find(begins).filter(|_| !body.on_stock) else { return Ok(()) };
+        let own = Slicer::of_slabs(mesh, vec![*first], profile.slice_options(), task)?.on(&profile.layers.chart);
+        let own: Vec<Polygon> = own.all(task)?.into_iter().flat_map(|slice| slice.islands).collect();
+        let own = Region::from_normalised(own);
+        // Around an axis and along a guide the mesh of a body holds what lies below its first layer, too.
+        let whole = |other: &&Own<'_>| matches!(other.body.chart, Chart::Plane(_) | Chart::Surface(_));
+        for other in later.iter().filter(whole) {
+            let under = under_layers(&other.mesh, &[*first], profile, task)?;
+            let outlines = under.into_iter().flat_map(|under| under.outlines).collect();
+            if own.intersection(&Region::from_normalised(outlines)).area() > LIES_ON * own.area() {
+                let name = &other.body.name;
+                let reason = format!(
+                    "its first layer lies on \"{name}\", which is welded after it: list bodies in the order in which they are welded."
+                );
+                return Err(self.own.wrong(reason));
+            }
+        }
+        Ok(())
     }
 
     fn plan<S: Sink + Send>(
@@ -172,15 +207,30 @@ impl<'a> Ready<'a> {
     }
 }
 
-/// What of a mesh lies just under the first layer of a chart, as that layer's underside is unrolled.
-fn under<E>(chart: &Chart, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Region, PlanError<E>> {
-    let depth = profile.layers.height / 2.0;
-    let lowered = chart.lowered(depth);
+/// A body lies on another if this part of its first layer does.
+const LIES_ON: f64 = 0.25;
+
+/// How far below the first layer metal may lie, as a part of a layer's height.
+const GAP: f64 = 0.25;
+/// How far below any other: where layers wedge out on a slope, the last one below ends where half of it would have no room.
+const WEDGED: f64 = 0.55;
+
+/// What of a mesh lies just under each layer.
+fn under_layers<E>(mesh: &Mesh, slabs: &[Slab], profile: &Profile, task: &Task) -> Result<Vec<Under>, PlanError<E>> {
+    let (chart, usual) = (&profile.layers.chart, profile.layers.height);
+    let lowered = chart.lowered(usual);
     let mesh = warp::warped(&lowered, mesh, charted::TOLERANCE, task)?;
-    let slab = Slab { z: depth, height: depth };
-    let slices = Slicer::of_slabs(&mesh, vec![slab], profile.slice_options(), task)?.on(&lowered).all(task)?;
-    let islands: Vec<Polygon> = slices.into_iter().flat_map(|slice| slice.islands).collect();
-    let (here, there) = (chart.sheet(0.0), chart.sheet(-depth / 2.0));
-    let moved = islands.iter().map(|island| island.moved(|p| here.across(p, &there))).collect();
-    Ok(Region::from_normalised(moved))
+    let gap = |k: usize, slab: &Slab| if k == 0 { GAP * usual } else { WEDGED * slab.height };
+    let cuts: Vec<(f64, f64)> =
+        slabs.iter().enumerate().map(|(k, slab)| (slab.z - slab.height, gap(k, slab))).collect();
+    // Slabs are cut in their middles.
+    let thin = GAP * usual;
+    let thin = |(height, gap): &(f64, f64)| Slab { z: height + usual - gap + thin / 2.0, height: thin };
+    let slicer = Slicer::of_slabs(&mesh, cuts.iter().map(thin).collect(), profile.slice_options(), task)?;
+    let under = slicer.on(&lowered).all(task)?.into_iter().zip(cuts).map(|(slice, (height, gap))| {
+        let (here, there) = (chart.sheet(height), chart.sheet(height - gap));
+        let outlines = slice.islands.iter().map(|island| island.moved(|p| here.across(p, &there))).collect();
+        Under { outlines, height }
+    });
+    Ok(under.collect())
 }

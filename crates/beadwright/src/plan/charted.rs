@@ -7,6 +7,7 @@ use crate::layer::Layer;
 use crate::model::{Mesh, PartRef};
 use crate::pass::{Along, Pass};
 use crate::profile::Profile;
+use crate::slice::Surface;
 use crate::task::Task;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
@@ -119,7 +120,10 @@ impl<'a> Unrolled<'a> {
             return Ok(None);
         }
         let PartRef::Mesh { mesh, milled, .. } = part else { return Err(PlanError::ChartOfCurves) };
-        stock::is_closed(mesh, profile)?;
+        stock::is_closed(mesh, profile).map_err(|open| match profile.slice.surface {
+            Some(Surface::Wall) => PlanError::ChartOfCurves,
+            _ => open,
+        })?;
         let own = unrolled(mesh, profile, task)?;
         if own.triangles.is_empty() {
             return Err(PlanError::Empty(format!(

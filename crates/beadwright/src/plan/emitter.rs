@@ -157,11 +157,17 @@ impl<S: Sink> Emitter<'_, S> {
         let (profile, index) = (self.profile, layer.index);
         let limits = &profile.check;
         let across = Across::new(&profile.layers.chart, self.below_middle, layer.middle());
-        let below = across.map_or(Cow::Borrowed(&self.below[..]), |across| across.islands(&self.below).into());
+        let mut below = across.map_or(Cow::Borrowed(&self.below[..]), |across| across.islands(&self.below).into());
+        let there = self.support.there(layer, profile);
+        let stands =
+            |pass: &Pass| pass.start().is_some_and(|p| there.iter().any(|island| island.contains(p.truncate())));
+        if !there.is_empty() {
+            below.to_mut().extend(there.iter().cloned());
+        }
         let mut doubt = |kind, place, size| layer.warnings.push(Warning { kind, layer: index, place, size });
         if let Some(first) = layer.passes.first() {
             let gap = layer.z - layer.height - self.built;
-            if gap > LARGE_GAP * layer.height {
+            if gap > LARGE_GAP * layer.height && !stands(first) {
                 let kind = if self.metrics.passes == 0 { WarningKind::HighStart } else { WarningKind::NothingBelow };
                 doubt(kind, first.start().unwrap_or_default().truncate(), gap);
             } else if !below.is_empty() {

@@ -356,10 +356,7 @@ fn run<S: Sink + Send>(
         memory: order::Memory::default(),
         helix: profile.wall.helix.then(|| Helix::new(extent.layers, profile.longest_pass())),
         no_turn: None,
-        below: match &footing {
-            Footing::Plate => Vec::new(),
-            Footing::Metal(islands) => islands.clone(),
-        },
+        below: Vec::new(),
         support: Support::on(footing),
         grown: Some(deposit_settings_over(profile, (extent.low, extent.high)))
             .filter(|settings| profile.is_level() && settings.over_one_another)

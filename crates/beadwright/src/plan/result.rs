@@ -119,7 +119,9 @@ pub enum PlanError<E> {
     )]
     PreformOfChart,
     /// Curves with layers that are not level.
-    #[error("walls given by curves have level layers. Leave layers.chart out, or give the wall as a solid.")]
+    #[error(
+        "walls given by curves or by an open surface have level layers. Leave layers.chart out, or give the wall as a solid of its thickness."
+    )]
     ChartOfCurves,
     /// Curves that may be the sides of one wall or the centre-lines of two.
     #[error(

@@ -39,17 +39,26 @@ pub(super) struct Support {
     before: (Vec<Pass>, Vec<Polygon>),
     /// Height of its middle, mm.
     middle: f64,
-    /// Whether its outlines are solid metal: those of bodies on which this one begins.
-    is_solid: bool,
+    footing: Footing,
 }
 
-/// What the first layer of a body lies on.
-#[derive(Debug, Clone)]
+/// What the layers of a body lie on besides one another.
+#[derive(Debug, Clone, Default)]
 pub(super) enum Footing {
-    /// Metal everywhere: a plate, or what the chart says is there.
+    /// Metal everywhere below the first layer: a plate, or what the chart says is there.
+    #[default]
     Plate,
-    /// Metal within these outlines, seen on the first layer's underside.
-    Metal(Vec<Polygon>),
+    /// Metal of other bodies.
+    Metal(Vec<Under>),
+}
+
+/// Metal that is there under a layer.
+#[derive(Debug, Clone)]
+pub(super) struct Under {
+    /// Its outlines, as the layer's underside is unrolled.
+    pub(super) outlines: Vec<Polygon>,
+    /// Height of that underside, mm.
+    pub(super) height: f64,
 }
 
 /// Footprints of passes.
@@ -60,11 +69,18 @@ struct Metal {
 }
 
 impl Support {
-    /// What the first layer lies on.
+    /// A body on what is there.
     pub(super) fn on(footing: Footing) -> Self {
-        match footing {
-            Footing::Plate => Self::default(),
-            Footing::Metal(islands) => Self { islands, is_solid: true, ..Self::default() },
+        Self { footing, ..Self::default() }
+    }
+
+    /// Outlines of the metal of other bodies that lies under a layer.
+    pub(super) fn there(&self, layer: &Layer, profile: &Profile) -> Vec<Polygon> {
+        let Footing::Metal(under) = &self.footing else { return Vec::new() };
+        let Some(under) = under.get(layer.index) else { return Vec::new() };
+        match Across::new(&profile.layers.chart, under.height, layer.middle()) {
+            Some(across) => across.islands(&under.outlines),
+            None => under.outlines.clone(),
         }
     }
 
@@ -72,7 +88,7 @@ impl Support {
     /// Sparse layers support the next as if they were filled, and printed beads bridge gaps. The upper of two layers stands on
     /// the lower one and on what lies below that.
     pub(super) fn judge(&mut self, layer: &mut Layer, profile: &Profile) {
-        let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0 && !self.is_solid);
+        let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0);
         if let Some(across) = Across::new(&profile.layers.chart, self.middle, layer.middle()) {
             self.passes = across.passes(&self.passes);
             self.islands = across.islands(&self.islands);
@@ -83,9 +99,11 @@ impl Support {
             self.islands.append(&mut self.before.1);
         }
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
-        if (self.is_solid || !self.passes.is_empty()) && !alike {
-            let metal = Metal::of(&self.passes, width);
-            let within = |p: DVec2| !solid && self.islands.iter().any(|island| island.contains(p));
+        let on_plate = matches!(self.footing, Footing::Plate) && self.passes.is_empty();
+        if !on_plate && !alike {
+            let (metal, there) = (Metal::of(&self.passes, width), self.there(layer, profile));
+            let below = if solid { &there[..] } else { &[&there[..], &self.islands[..]].concat()[..] };
+            let within = |p: DVec2| below.iter().any(|island| island.contains(p));
             let below = |p: DVec2| match metal.is_at(p, 0.0) || within(p) {
                 true => Below::Metal,
                 false if metal.is_at(p, CLEAR * width) => Below::Edge,
@@ -100,7 +118,7 @@ impl Support {
         }
         let passes = std::mem::replace(&mut self.passes, layer.passes.clone());
         self.before = (passes, std::mem::replace(&mut self.islands, layer.islands.clone()));
-        (self.middle, self.is_solid) = (layer.middle(), false);
+        self.middle = layer.middle();
     }
 
     /// Whether an island of the layer that was judged last was left out.

@@ -81,6 +81,12 @@ impl Body {
             let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
             BodiesError { line: before.matches('\n').count() + 1, reason: error.message().to_owned() }
         })?;
+        let twice = |k: &usize| file.body[..*k].iter().any(|body| body.name == file.body[*k].name);
+        if let Some(k) = (0..file.body.len()).find(twice) {
+            let heads = text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with("[[body]]"));
+            let line = heads.map(|(line, _)| line + 1).nth(k).unwrap_or_default();
+            return Err(BodiesError { line, reason: format!("another body is named \"{}\", too", file.body[k].name) });
+        }
         Ok(file.body)
     }
 

@@ -284,3 +284,56 @@ fn a_part_on_a_base_must_lie_on_it() {
         beside.summary.forbidden
     );
 }
+
+/// A block on a wider base: every layer of the tilted one reaches the base where it is the lowest.
+#[test]
+fn tilted_layers_stand_on_the_base_all_the_way_up() {
+    let mesh = mesh_of(&[
+        block(DVec3::new(-30.0, -20.0, 0.0), DVec3::new(130.0, 60.0, 12.0)),
+        block(DVec3::new(0.0, 0.0, 12.0), DVec3::new(100.0, 40.0, 42.0)),
+    ]);
+    for degrees in [5.0_f64, 10.0, 14.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let profile = with_bodies(&format!(
+            "[[body]]\nname = \"base\"\nwithin = [\"up=-z,through=0/0/12\"]\n\n[[body]]\nname = \"wedge\"\n\
+             chart = \"plane:up={sin}/0/{cos},through=0/0/12\"\nwithin = [\"up=z,through=0/0/12\"]\n"
+        ));
+        let plan = planned(&mesh, &profile).unwrap();
+        assert_eq!(plan.summary.forbidden, Vec::<String>::new(), "{degrees}");
+        let hanging = plan.summary.warnings.summaries().filter(|w| w.kind == WarningKind::Overhang).count();
+        assert_eq!(hanging, 0, "{degrees}");
+    }
+}
+
+#[test]
+fn a_body_on_one_that_is_welded_after_it_is_refused() {
+    let column = |x: f64| block(DVec3::new(x, 0.0, 0.0), DVec3::new(x + 30.0, 30.0, 60.0));
+    let mesh = mesh_of(&[column(0.0), column(150.0)]);
+    let upper = "[[body]]\nname = \"up\"\nchart = \"plane:up=z,through=0/0/30\"\n";
+    let lower = "[[body]]\nname = \"low\"\nwithin = [\"up=-z,through=0/0/30\"]\n";
+    let refused = planned(&mesh, &with_bodies(&format!("{upper}{lower}"))).unwrap_err().to_string();
+    assert!(refused.contains("up") && refused.contains("lies on \"low\", which is welded after it"), "{refused}");
+    let plan = planned(&mesh, &with_bodies(&format!("{lower}{upper}"))).unwrap();
+    assert_eq!(plan.summary.forbidden, Vec::<String>::new());
+}
+
+/// Walls have more metal on the first layer of a body: on that of every body, wherever it comes in the plan.
+#[test]
+fn first_layers_of_walls_fit_their_wire_on_every_body() {
+    let mesh = mesh_of(&[block(DVec3::ZERO, DVec3::new(100.0, 7.0, 60.0))]);
+    let mut profile = with_bodies(
+        "[[body]]\nname = \"low\"\nwithin = [\"up=-z,through=0/0/30\"]\nstrategy = \"wall\"\n\n\
+         [[body]]\nname = \"up\"\nchart = \"plane:up=z,through=0/0/30\"\nstrategy = \"wall\"\n",
+    );
+    profile.layers.predict = beadwright::profile::Predict::Always;
+    let plan = planned(&mesh, &profile).unwrap();
+    let found = check::check(&plan.layers, &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
+    assert!(found.iter().all(|finding| finding.kind != "wire-balance"), "{found:?}");
+}
+
+#[test]
+fn two_bodies_of_one_name_are_refused() {
+    let text = "[[body]]\nname = \"a\"\n\n[[body]]\nname = \"a\"\nwithin = [\"up=z,through=0/0/9\"]\n";
+    let refused = Body::read(text).unwrap_err().to_string();
+    assert!(refused.starts_with("line 4: another body is named \"a\""), "{refused}");
+}

@@ -277,6 +277,20 @@ fn what_does_not_go_with_a_chart_is_refused() {
     assert!(plan.summary.forbidden.iter().any(|reason| reason.contains("no room for travels")), "{:?}", plan.summary);
 }
 
+/// A box without its lid, as a wall of one bead on tilted layers: the remedy is not the key that is set already.
+#[test]
+fn open_surfaces_are_walls_on_level_layers_only() {
+    let mut mesh = mesh("cross");
+    let (vertices, top) = (mesh.vertices.clone(), mesh.bounds().1.z);
+    let lid = |corners: &[u32; 3]| corners.iter().all(|corner| vertices[*corner as usize].z > top - 1e-6);
+    let open = mesh.triangles.iter().copied().filter(|corners| !lid(corners)).collect();
+    mesh = Mesh::from_triangles(vertices.clone(), open).0;
+    let mut profile = charted("plane:up=0.1/0/1");
+    profile.slice.surface = Some(beadwright::slice::Surface::Wall);
+    let refused = plan::plan("part", &mesh, &profile, &Task::new()).unwrap_err().to_string();
+    assert!(refused.contains("open surface have level layers") && !refused.contains("slice.surface"), "{refused}");
+}
+
 #[test]
 fn what_lies_below_the_first_layer_is_refused() {
     let profile = charted("cylinder:axis=z,radius=500");

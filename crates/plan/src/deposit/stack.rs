@@ -86,11 +86,13 @@ impl Stack {
         &self.growth
     }
 
-    /// The state of all that is built, each place by the highest layer there; `None` before the first layer.
+    /// The state of all that is built, each place by the highest layer there; `None` where no layer is wider than its rim, as where the
+    /// top is one slope.
     pub fn built(&self) -> Option<Growth> {
         let columns = self.grid.columns.max(1);
         let all = self.wanted.chunks(columns).enumerate().map(|(row, wanted)| (row, 0..wanted.len()));
-        self.layer_height.map(|height| self.compared(all, height))
+        let any = self.wanted.iter().any(|wanted| !wanted.is_nan());
+        self.layer_height.filter(|_| any).map(|height| self.compared(all, height))
     }
 
     /// Height of the metal at the grid point nearest to a place, mm; `None` beyond the grid.

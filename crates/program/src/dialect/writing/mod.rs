@@ -202,18 +202,17 @@ pub enum DialectError {
 
 /// Refuses axes that a dialect does not write.
 fn check_axes(dialect: &'static Dialect, program: &ProgramSettings) -> Result<(), DialectError> {
-    let turning = turning_key(program);
-    let axes: [(Option<&'static str>, fn(&Dialect) -> bool); 2] = [
-        (program.linear_axis.map(|_| "program.linear_axis"), |dialect| dialect.linear_axis),
-        (turning, |dialect| dialect.table),
-    ];
-    for (key, writes) in axes {
-        if let Some(key) = key.filter(|_| !writes(dialect)) {
-            let names: Vec<&str> = ALL.iter().filter(|other| writes(other)).map(|other| other.name).collect();
-            return Err(DialectError::NoAxis { dialect: dialect.name, key, others: names.join(" and ") });
+    let refuse = |key: &'static str, writes: fn(&Dialect) -> bool| {
+        let names: Vec<&str> = ALL.iter().filter(|other| writes(other)).map(|other| other.name).collect();
+        Err(DialectError::NoAxis { dialect: dialect.name, key, others: names.join(" and ") })
+    };
+    match turning_key(program) {
+        _ if program.linear_axis.is_some() && !dialect.linear_axis => {
+            refuse("program.linear_axis", |dialect| dialect.linear_axis)
         }
+        Some(key) if !dialect.table => refuse(key, |dialect| dialect.table),
+        _ => Ok(()),
     }
-    Ok(())
 }
 
 /// The key of what turns the part; `None` where nothing does.
