@@ -45,8 +45,8 @@ pub(crate) fn simulate<'py>(
     let mesh = part.and_then(|part| part.part.mesh());
     let mut raised = None;
     let mut find = |name: &str| {
-        let told = Python::attach(|py| module.call1(py, (name,))?.extract::<Option<String>>(py));
-        told.unwrap_or_else(|error| {
+        let found = Python::attach(|py| module.call1(py, (name,))?.extract::<Option<String>>(py));
+        found.unwrap_or_else(|error| {
             raised = Some(error);
             None
         })

@@ -20,9 +20,9 @@ def test_built_in_profiles_are_read() -> None:
 
 def test_values_are_those_of_the_text() -> None:
     profile = Profile("cmt-al2319-kuka")
-    told = tomllib.loads(profile.text)
-    assert profile["bead.width"] == told["bead"]["width"]
-    assert profile.values["layers"]["height"] == told["layers"]["height"]
+    read = tomllib.loads(profile.text)
+    assert profile["bead.width"] == read["bead"]["width"]
+    assert profile.values["layers"]["height"] == read["layers"]["height"]
     with pytest.raises(KeyError):
         profile["bead.colour"]
 

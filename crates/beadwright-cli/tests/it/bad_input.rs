@@ -1,5 +1,5 @@
 //! Files and arguments that once broke the program, led to wrong plans or took all memory: each is refused with one sentence
-//! or planned with its doubts told first. The files lie in the shared folder (`BEADWRIGHT_CASES`).
+//! or planned with its doubts reported first. The files lie in the shared folder (`BEADWRIGHT_CASES`).
 
 use crate::common::beadwright;
 use std::fs;
@@ -193,8 +193,8 @@ fn case_1626_plans_are_checked_with_the_profile_that_they_carry() {
         "-o",
         "fdm",
     ]);
-    let told = ok(&["inspect", "fdm/plate.gcode"]);
-    assert!(told.contains("Read with the profile fdm-abs-0.4 (the program names it)"), "{told}");
+    let printed = ok(&["inspect", "fdm/plate.gcode"]);
+    assert!(printed.contains("Read with the profile fdm-abs-0.4 (the program names it)"), "{printed}");
     fs::write(folder.path().join("other.gcode"), "G21\nG90\nM83\nG1 X0 Y0 Z0.2 F600\nG1 X20 E1\n").unwrap();
     let asked = beadwright(folder.path(), &["simulate", "other.gcode"]);
     let said = String::from_utf8_lossy(&asked.stderr).into_owned();

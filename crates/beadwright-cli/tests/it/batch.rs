@@ -66,12 +66,14 @@ fn rows_are_the_plans_of_the_command() {
         ["batch", "cross.stl", "star.stl", "-p", profiles[0], "-p", profiles[1], "-s", "zigzag", "-s", "contour"];
     let rest =
         ["--sweep", "layers.height=1.8:2.2:2", "--grid", "1", "--turn", "0,0,30", "-o", "rows.json", "--threads", "3"];
-    let told = ok(at, &[&batch[..], &rest].concat());
+    let printed = ok(at, &[&batch[..], &rest].concat());
     let rows: Vec<Value> = serde_json::from_str(&fs::read_to_string(at.join("rows.json")).unwrap()).unwrap();
     assert_eq!(rows.len(), 16);
     assert!(
-        told.contains("layers.height mm") && told.contains("time min") && told.contains("16 rows in rows.json"),
-        "{told}"
+        printed.contains("layers.height mm")
+            && printed.contains("time min")
+            && printed.contains("16 rows in rows.json"),
+        "{printed}"
     );
     let mut rows = rows.iter();
     for file in ["cross.stl", "star.stl"] {
@@ -112,8 +114,8 @@ fn all_formats_are_the_same_with_any_number_of_threads() {
             let file = format!("{threads}.{format}");
             let batch =
                 ["batch", "cross.stl", "gear.stl", "-s", "zigzag", "--grid", "1", "-o", &file, "--threads", threads];
-            let told = ok(folder.path(), &[&batch[..], &["--sweep", "fill.raster_angle=0:45:2"]].concat());
-            (told.replace(&file, "the file"), fs::read_to_string(folder.path().join(file)).unwrap())
+            let printed = ok(folder.path(), &[&batch[..], &["--sweep", "fill.raster_angle=0:45:2"]].concat());
+            (printed.replace(&file, "the file"), fs::read_to_string(folder.path().join(file)).unwrap())
         };
         ["csv", "json", "html"].map(write)
     };
@@ -162,11 +164,11 @@ fn what_fails_stands_in_its_row() {
     assert!(problems[2].is_empty() && rows[3][0] == "cross.stl", "{problems:?}");
     assert!(problems[3].contains("layers.height = 90 is impossible") && problems[3].contains("mm"), "{problems:?}");
     assert!(problems[4].contains("missing.stl"), "{problems:?}");
-    let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert_eq!(told.matches("  error: ").count(), 5, "{told}");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(printed.matches("  error: ").count(), 5, "{printed}");
 }
 
-/// A block that floats is planned, but should not be welded: its figures and the reason are told, the status is 3.
+/// A block that floats is planned, but should not be welded: its figures and the reason are printed, the status is 3.
 #[test]
 fn what_should_not_be_welded_is_told() {
     let folder = TempDir::new().unwrap();
@@ -177,8 +179,8 @@ fn what_should_not_be_welded_is_told() {
     assert_eq!(output.status.code(), Some(3), "{output:?}");
     let rows: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("rows.json")).unwrap()).unwrap();
     assert!(rows[0]["error"].is_null() && rows[0]["metrics"]["arc_starts"].as_u64() > Some(0));
-    let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(told.contains("should not be welded: ") && told.contains("no bead lies below"), "{told}");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(printed.contains("should not be welded: ") && printed.contains("no bead lies below"), "{printed}");
     assert!(String::from_utf8_lossy(&output.stderr).contains("1 of 1 plans should not be welded as they are"));
 }
 

@@ -1,4 +1,4 @@
-//! The arm in the 3-D view stands where the torch is.
+//! The arm in the 3-D view reaches to where the torch is.
 
 use beadwright::model::Model;
 use beadwright::profile::Profile;
@@ -42,7 +42,7 @@ fn the_wire_tip_of_every_arm_is_at_the_bead() {
                 }
             }
         }
-        assert!(stood > 20, "{name}: the arm stands at {stood} beads only");
+        assert!(stood > 20, "{name}: the arm is shown at {stood} beads only");
     }
 }
 

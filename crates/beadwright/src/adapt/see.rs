@@ -28,7 +28,7 @@ pub const BESIDE: f64 = 0.2;
 /// Where the shape of a layer is predicted to be this part of its thickness above or below its top, nothing is compared.
 const DOUBTFUL: f64 = 0.3;
 
-/// Cells that stand in where nothing was measured.
+/// Cells that fill in where nothing was measured.
 const STAND_IN: usize = 8;
 
 /// A scan compared with its plan.

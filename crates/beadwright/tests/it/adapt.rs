@@ -1,4 +1,4 @@
-//! Scans and what follows from them: all formats tell the same, known errors come back as the metal that closed forms say,
+//! Scans and what follows from them: all formats give the same, known errors come back as the metal that closed forms say,
 //! and what cannot be of the plan is refused.
 
 use crate::common;

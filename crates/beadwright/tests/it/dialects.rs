@@ -248,7 +248,7 @@ fn what_the_project_reads_is_the_same() {
     }
 }
 
-/// A form of ArcTech stands where the arc is lit and where it ends, and nowhere else; speeds change in between, and ARCOFF
+/// A form of ArcTech is written where the arc is lit and where it ends, and nowhere else; speeds change in between, and ARCOFF
 /// moves at that of its own piece.
 #[test]
 fn arctech_forms_stand_where_the_arc_is_switched() {
@@ -301,7 +301,7 @@ fn the_krl_reader_refuses_what_arctech_would() {
         let mut bad = good.clone();
         let text = bad.get_mut(file).unwrap();
         *text = text.replacen(old, new, 1);
-        assert_ne!(*text, good[file], "{old:?} does not stand in {file}");
+        assert_ne!(*text, good[file], "{old:?} is not in {file}");
         assert!(!taken(&bad), "{old:?} became {new:?} in {file}, and the reader took it");
     }
 }
@@ -489,8 +489,8 @@ fn passes_too_long_for_a_program_are_lit_again() {
             let again: usize = cut.layers.iter().map(|l| l.passes.len()).sum::<usize>()
                 - whole.layers.iter().map(|l| l.passes.len()).sum::<usize>();
             assert!(again > 0, "{part} {max}");
-            let told = cut.summary.warnings.summaries().find(|w| w.kind == WarningKind::Relit).unwrap();
-            assert_eq!(told.total as usize, again);
+            let reported = cut.summary.warnings.summaries().find(|w| w.kind == WarningKind::Relit).unwrap();
+            assert_eq!(reported.total as usize, again);
             for pass in cut.layers.iter().flat_map(|l| &l.passes) {
                 let alone = Layer { passes: vec![pass.clone()], ..Layer::default() };
                 assert!(programmer().layer(&alone).instructions.len() <= max);
@@ -498,7 +498,7 @@ fn passes_too_long_for_a_program_are_lit_again() {
             // Each new start lies an overlap back, and a closed pass that is cut ends as far beyond its own start.
             let overlap = profile.start_stop.end_overlap.max(profile.bead.width);
             let length = |plan: &plan::Plan| plan.summary.metrics.deposited_length_mm;
-            let ends = told.count as f64 * (overlap - profile.start_stop.end_overlap);
+            let ends = reported.count as f64 * (overlap - profile.start_stop.end_overlap);
             let wanted = length(&whole) + again as f64 * overlap + ends;
             assert!((length(&cut) / wanted - 1.0).abs() < 1e-6, "{part} {max}: {} mm for {wanted}", length(&cut));
             let files = written("fanuc", part, &cut.layers, &profile);

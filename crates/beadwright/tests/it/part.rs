@@ -143,7 +143,7 @@ fn a_part_is_moved_and_turned_where_it_stands() {
             let wanted = way.rotate(a.truncate() - foot) + foot + shift;
             assert!(b.truncate().distance(wanted) < 1e-5 && (a.z - b.z).abs() < 1e-9, "{wanted} became {b}");
         }
-        // The middle of a centred part stands where it is told to.
+        // The middle of a centred part is where it was asked to be.
         let centred = Placement { centre: true, ..first };
         let after = placed(&centred.moved(shift, angle, middle(&placed(&centred))));
         assert!(middle(&after).distance(DVec2::new(340.0, 72.5)) < 1e-9, "{}", middle(&after));

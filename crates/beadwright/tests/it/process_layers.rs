@@ -1,4 +1,4 @@
-//! Other speeds for some layers: the beads stay the same, and programs tell speed, wire feed and job where they change.
+//! Other speeds for some layers: the beads stay the same, and programs set speed, wire feed and job where they change.
 
 use crate::common;
 use beadwright::fill::StrategyName;
@@ -57,7 +57,7 @@ fn programs_tell_speed_feed_and_job() {
         assert!(text.contains(&format!("JOB( {job} )")) && text.contains(&format!("$ANOUT[1] = {rate:.4}")), "{text}");
         assert!(text.contains(&format!("$VEL.CP = {:.6}", nominal * rate / 1000.0)), "{text}");
     }
-    // Nothing that the cell would not be told.
+    // Nothing that is not sent to the cell.
     let refused = |change: fn(&mut Profile)| {
         let mut profile = faster(profile.clone());
         change(&mut profile);

@@ -193,13 +193,13 @@ fn all_missing_keys_are_told_at_once() {
             }
         }
         let error = Profile::parse(&bare.to_string()).unwrap_err().to_string();
-        let told = error.split_once("keys are missing: ").unwrap().1.trim_end_matches('.');
-        let mut told: Vec<&str> = told.split(", ").collect();
-        told.sort_unstable();
+        let reported = error.split_once("keys are missing: ").unwrap().1.trim_end_matches('.');
+        let mut reported: Vec<&str> = reported.split(", ").collect();
+        reported.sort_unstable();
         needed.sort_unstable();
-        assert_eq!(told, needed, "{name}");
+        assert_eq!(reported, needed, "{name}");
     }
-    // Whole sections are told by their keys, and what is there is not.
+    // Missing sections are reported key by key; keys that are there are not.
     let error = Profile::parse("name = \"empty\"\n[wire]\ndiameter = 1.2\n").unwrap_err().to_string();
     assert!(error.starts_with("line 1 of the profile: ") || error.starts_with("line 2 of the profile: "), "{error}");
     for key in ["description", "posts", "wire.density", "process.deposition_speed", "bead.width", "travel.clearance"] {

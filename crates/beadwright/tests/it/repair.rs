@@ -1,4 +1,4 @@
-//! Broken meshes: what the report tells, and what is left after the mending.
+//! Broken meshes: what the report says, and what is left after the mending.
 
 use crate::solids;
 

@@ -171,7 +171,7 @@ fn posts_that_cannot_restart_refuse() {
     }
 }
 
-/// Lines of the profile stand where they should, each as often as it should.
+/// Lines of the profile are where they should be, each as often as it should.
 #[test]
 fn hooks_stand_at_their_places() {
     for (post, name, _) in POSTS {
@@ -219,7 +219,7 @@ fn hooks_stand_at_their_places() {
     }
 }
 
-/// What the cell must supply is told at the head of every program.
+/// What the cell must supply is listed at the head of every program.
 #[test]
 fn the_head_tells_what_the_cell_must_supply() {
     for (post, name, main) in POSTS {

@@ -21,7 +21,7 @@ fn job() -> Vec<Layer> {
     vec![Layer { index: 0, z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() }]
 }
 
-/// The numbers behind every place where a text stands, as many as there are to the end of the brackets.
+/// The numbers after every occurrence of a text, as many as there are to the end of the brackets.
 fn numbers_behind(files: &BTreeMap<String, String>, mark: &str, count: usize) -> Vec<Vec<f64>> {
     let number = |t: &str| t.trim().trim_start_matches(|c: char| c.is_alphabetic() || c == '=' || c == ' ').to_owned();
     let mut found = Vec::new();

@@ -33,7 +33,7 @@ fn a_fault_in_the_planner_is_told_and_it_plans_again() {
     let mut planner = Planner::new(bell);
     let project = Project { source: Some(Source::Example("cross".to_owned())), ..Project::default() };
     planner.plan(&project, 0);
-    let Event::Failed(Failure::Sentence(text)) = last(&mut planner) else { panic!("the fault is not told") };
+    let Event::Failed(Failure::Sentence(text)) = last(&mut planner) else { panic!("the fault is not reported") };
     assert!(text.contains("the bell is cracked") && text.contains("report") && text.ends_with('.'), "{text}");
     planner.plan(&project, 0);
     assert!(matches!(last(&mut planner), Event::Checked(..)));

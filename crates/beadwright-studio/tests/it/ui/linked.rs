@@ -35,7 +35,7 @@ fn a_bead_clicked_in_3d_is_the_one_of_the_layer_view_and_back() {
     ];
     slide(&mut harness, "Last layer", top as f64 + 1.0);
     assert!(figures.iter().all(|figure| sees(&harness, figure)), "{figures:?}");
-    // The layer view goes to its layer, and tells the same of it.
+    // The layer view goes to its layer, and shows the same values.
     press(&mut harness, Key::F3);
     assert_eq!((harness.state_mut().view().last, harness.state_mut().view().chosen), (4, Some(chosen)));
     assert!(figures.iter().all(|figure| sees(&harness, figure)), "{figures:?}");
