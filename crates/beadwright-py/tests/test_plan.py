@@ -135,7 +135,7 @@ def test_a_quarter_turn_and_a_mirror_change_nothing(strategy: str) -> None:
             assert other.metrics[name] == pytest.approx(as_is.metrics[name], rel=near), name
 
 
-def test_thin_walls_are_told_with_their_place() -> None:
+def test_thin_walls_are_reported_with_their_place() -> None:
     corners, faces = prism([(0, 0), (60, 0), (60, 40), (0, 40)], 6)
     fin, more = prism([(100, 0), (101, 0), (101, 40), (100, 40)], 6)
     part = Part.from_triangles(np.vstack([corners, fin]), np.vstack([faces, more + len(corners)]))

@@ -149,7 +149,7 @@ fn all_formats_are_the_same_with_any_number_of_threads() {
 
 /// A file that cannot be read and a value that is impossible end with a sentence in their rows; the others are planned.
 #[test]
-fn what_fails_stands_in_its_row() {
+fn what_fails_is_in_its_row() {
     let folder = folder_with(&["cross"]);
     let at = folder.path();
     fs::write(at.join("letter, not a \"part\".stl"), "hello").unwrap();
@@ -170,7 +170,7 @@ fn what_fails_stands_in_its_row() {
 
 /// A block that floats is planned, but should not be welded: its figures and the reason are printed, the status is 3.
 #[test]
-fn what_should_not_be_welded_is_told() {
+fn what_should_not_be_welded_is_reported() {
     let folder = TempDir::new().unwrap();
     let (foot, lid) = (block([0.0; 3], [60.0, 40.0, 4.0]), block([0.0, 0.0, 14.0], [60.0, 40.0, 18.0]));
     fs::write(folder.path().join("floating.stl"), format!("solid a\n{foot}{lid}endsolid a\n")).unwrap();
@@ -185,7 +185,7 @@ fn what_should_not_be_welded_is_told() {
 }
 
 #[test]
-fn wrong_usage_is_told_before_anything_is_planned() {
+fn wrong_usage_is_refused_before_anything_is_planned() {
     let folder = folder_with(&["cross"]);
     for (arguments, status, part) in [
         (&["-o", "rows.txt"][..], 2, ".csv, .json or .html"),

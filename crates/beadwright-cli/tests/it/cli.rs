@@ -208,7 +208,7 @@ fn profiles_are_listed_shown_checked_and_described() {
 }
 
 #[test]
-fn inspect_tells_what_a_mesh_holds() {
+fn inspect_says_what_a_mesh_holds() {
     let folder = folder_with("gear");
     let json: serde_json::Value = serde_json::from_str(&ok(folder.path(), &["inspect", "gear.stl", "--json"])).unwrap();
     assert_eq!((json["format"].as_str(), json["repair"]["shells"].as_u64()), (Some("binary STL"), Some(1)));
@@ -382,7 +382,7 @@ fn curves_are_inspected_and_welded_as_walls() {
 }
 
 #[test]
-fn reach_tells_margins_and_refuses_what_is_too_far() {
+fn reach_gives_margins_and_refuses_what_is_too_far() {
     let folder = folder_with("cross");
     ok(folder.path(), &["plan", "cross.stl", "-o", "out", "--no-deposit"]);
     let reach = ["reach", "out/plan.json", "--cell", "kuka-kr20-r1810"];
@@ -656,7 +656,7 @@ fn alone() -> (TempDir, PathBuf) {
 }
 
 #[test]
-fn a_studio_that_is_not_there_is_told() {
+fn a_missing_studio_is_reported() {
     let (folder, program) = alone();
     let output = Command::new(program).args(["studio", "propeller"]).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
@@ -684,7 +684,7 @@ fn a_studio_beside_the_command_is_started() {
 }
 
 #[test]
-fn a_large_plan_is_told_before_it_is_made() {
+fn a_large_plan_is_announced_before_it_is_made() {
     let folder = folder_with("cross");
     let listed = |more: &[&str]| {
         let arguments = [&["plan", "cross.stl", "-s", "zigzag", "--no-deposit"], more].concat();

@@ -49,7 +49,7 @@ fn a_scan_is_compared_with_the_part_as_it_is_planned() {
 }
 
 #[test]
-fn a_wrong_unit_is_told_with_its_remedy() {
+fn a_wrong_unit_is_reported_with_its_remedy() {
     let folder = folder(0.0, 1.0 / 25.4);
     let text = said(folder.path(), &["cross.stl", "scan.csv"]);
     assert!(text.starts_with("warning: the scan has about 1/25.4 the size"), "{text}");

@@ -172,7 +172,7 @@ fn case_1616_what_cannot_be_written_is_said_and_leaves_nothing() {
 
 /// SIGTERM stops a run as Ctrl-C does: nothing is left behind.
 #[test]
-fn case_1617_a_run_that_is_told_to_end_leaves_nothing() {
+fn case_1617_a_run_that_is_asked_to_end_leaves_nothing() {
     let place = tempfile::tempdir().unwrap();
     let model = place.path().join("part.stl");
     beadwright().args(["example", "propeller", "-o"]).arg(&model).output().unwrap();

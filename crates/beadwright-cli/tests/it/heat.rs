@@ -14,7 +14,7 @@ fn json(text: &str) -> serde_json::Value {
 }
 
 #[test]
-fn the_heat_of_a_plan_is_told_and_drawn() {
+fn the_heat_of_a_plan_is_printed_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     said(&beadwright(at, &["example", "cross", "-o", "cross.stl"]));
@@ -87,7 +87,7 @@ fn programs_wait_for_the_limit() {
 }
 
 #[test]
-fn what_a_profile_lacks_is_told() {
+fn what_a_profile_lacks_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     said(&beadwright(at, &["example", "cross", "-o", "cross.stl"]));

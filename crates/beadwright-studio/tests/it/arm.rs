@@ -47,7 +47,7 @@ fn the_wire_tip_of_every_arm_is_at_the_bead() {
 }
 
 #[test]
-fn nothing_stands_where_there_is_no_pass() {
+fn no_arm_is_shown_where_there_is_no_pass() {
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     let cell = Cell::built_in("kuka-kr20-r1810").unwrap();
     let reach = robot::reach(&cell, cell.part, &profile.track::<beadwright::layer::Layer>(&[]));

@@ -20,7 +20,7 @@ fn stl(triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
 }
 
 #[test]
-fn broken_files_are_told_and_the_program_lives_on() {
+fn broken_files_are_reported_and_the_program_lives_on() {
     let folder = tempfile::tempdir().unwrap();
     let triangle = |far: f32| [[0.0, 0.0, 0.0], [far, 0.0, 0.0], [0.0, far, 50.0]];
     let cut = { stl(&[triangle(100.0); 20])[..700].to_vec() };

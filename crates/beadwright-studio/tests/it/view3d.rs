@@ -237,7 +237,7 @@ fn colours_of_a_map_are_all_different_and_grow_brighter() {
 }
 
 #[test]
-fn beads_tell_how_warm_the_metal_was_where_a_limit_holds() {
+fn beads_know_how_warm_the_metal_was_where_a_limit_holds() {
     let mut limited = profile();
     let limits =
         beadwright::heat::Interpass { max_temperature: 120.0, min_temperature: None, reorder: true, along: false };

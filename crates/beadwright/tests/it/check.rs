@@ -433,7 +433,7 @@ fn points_too_dense_for_the_controller_are_found() {
 }
 
 #[test]
-fn every_check_tells_what_why_and_what_to_do() {
+fn every_check_says_what_why_and_what_to_do() {
     for check in &CHECKS {
         for text in [check.what, check.why, check.example, check.remedy] {
             assert!(text.len() > 20, "{}", check.name);

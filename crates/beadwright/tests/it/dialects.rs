@@ -251,7 +251,7 @@ fn what_the_project_reads_is_the_same() {
 /// A form of ArcTech is written where the arc is lit and where it ends, and nowhere else; speeds change in between, and ARCOFF
 /// moves at that of its own piece.
 #[test]
-fn arctech_forms_stand_where_the_arc_is_switched() {
+fn arctech_forms_are_written_where_the_arc_is_switched() {
     let mut profile = profile();
     profile.dialects.krl.as_mut().unwrap().arc = KrlArc::Arctech;
     let mut job = job();
@@ -360,7 +360,7 @@ fn long_layers_of_krl_and_rapid_are_cut_between_passes() {
 }
 
 #[test]
-fn urscript_tells_the_payload() {
+fn urscript_sets_the_payload() {
     let mut profile = profile();
     assert!(!written("urscript", "demo", &job(), &profile)["demo.script"].contains("set_payload"));
     profile.dialects.urscript.as_mut().unwrap().payload = Some(4.2);

@@ -60,7 +60,7 @@ fn bites_of_a_sphere_are_closed_up_to_a_size() {
 
 /// Areas of the legend by hand: a cube on the plate, and one on a corner.
 #[test]
-fn the_picture_tells_what_hangs_over() {
+fn the_picture_shows_what_hangs_over() {
     let area = |facets: &[Facet], name: &str| -> f64 {
         let picture = overhang::svg(&imported(facets).mesh).unwrap();
         let line = picture.lines().find(|line| line.contains(name)).unwrap();

@@ -54,7 +54,7 @@ fn files_inherit_from_files() {
 }
 
 #[test]
-fn what_cannot_be_inherited_is_told() {
+fn what_cannot_be_inherited_is_reported() {
     let unknown = Profile::parse("inherits = \"cmt-steel-abc\"\n").unwrap_err();
     assert!(unknown.to_string().contains("Did you mean \"cmt-steel-abb\"?"), "{unknown}");
     let circle =

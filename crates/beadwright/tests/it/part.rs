@@ -130,7 +130,7 @@ fn placements_scale_centre_and_ask_for_units() {
 }
 
 #[test]
-fn a_part_is_moved_and_turned_where_it_stands() {
+fn a_part_is_moved_and_turned_where_it_is() {
     let placed = |placement: &Placement| placement.solid(solid("propeller"), 7.54).unwrap().mesh;
     let middle = |mesh: &Mesh| ((mesh.bounds().0 + mesh.bounds().1) / 2.0).truncate();
     for (turn, angle) in [(DVec3::ZERO, 30.0), (DVec3::new(20.0, -50.0, 170.0), 100.0), (DVec3::X * 90.0, -200.0)] {

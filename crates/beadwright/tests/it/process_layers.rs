@@ -43,7 +43,7 @@ fn plain_speed(follow: Follow, pace: f64) -> f64 {
 }
 
 #[test]
-fn programs_tell_speed_feed_and_job() {
+fn programs_set_speed_feed_and_job() {
     let mut profile = flat(profile("cmt-al2319-kuka"));
     profile.fill.strategy = StrategyName::Contour;
     let nominal = profile.process.deposition_speed;

@@ -150,7 +150,7 @@ fn resolution_grows_with_the_layer_only() {
 }
 
 #[test]
-fn many_warnings_of_a_layer_are_told_in_part() {
+fn many_warnings_of_a_layer_are_shown_in_part() {
     let decoded = decode(&encode::layer(&square(50.0), &process(), None));
     let shown = decoded.warnings.as_array().unwrap();
     assert_eq!((decoded.head[8], shown.len()), (100.0, 30));
@@ -239,7 +239,7 @@ fn cell<'a>(html: &'a str, name: &str) -> &'a str {
 }
 
 #[test]
-fn the_page_tells_of_what_is_laid_only() {
+fn the_page_speaks_only_of_what_is_laid() {
     for strategy in ["raster", "zigzag", "contour", "compound", "hybrid", "loop", "hilbert"] {
         let mut profile = profile("cmt-al2319-kuka");
         profile.fill.strategy = strategy.parse().unwrap();

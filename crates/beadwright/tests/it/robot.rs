@@ -62,7 +62,7 @@ fn stands(cell: &Cell, joints: [f64; 6], at: [f64; 3], along: DVec3) {
 }
 
 #[test]
-fn the_kuka_stands_as_its_maker_tells() {
+fn the_kuka_reaches_where_its_maker_says() {
     // Straight up, the home pose, stretched level, and turned: A1 runs clockwise.
     stands(&kuka(), [0.0, -90.0, 0.0, 0.0, 0.0, 0.0], [10.0, 0.0, 2313.0], DVec3::Z);
     stands(&kuka(), [0.0, -90.0, 90.0, 0.0, 0.0, 0.0], [1173.0, 0.0, 1450.0], DVec3::X);
@@ -76,7 +76,7 @@ fn the_kuka_stands_as_its_maker_tells() {
 }
 
 #[test]
-fn the_abb_stands_as_its_maker_tells() {
+fn the_abb_reaches_where_its_maker_says() {
     stands(&abb(), [0.0; 6], [955.0, 0.0, 1195.0], DVec3::X);
     stands(&abb(), [0.0, 0.0, -90.0, 0.0, 0.0, 0.0], [30.0, 0.0, 1880.0], DVec3::Z);
     stands(&abb(), [90.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 955.0, 1195.0], DVec3::Y);
@@ -91,7 +91,7 @@ fn the_abb_stands_as_its_maker_tells() {
 
 /// Poses worked out by hand from the axes of their descriptions: all joints at zero, straight up, turned, hand down.
 #[test]
-fn arms_for_arc_welding_stand_as_described() {
+fn arms_for_arc_welding_reach_as_described() {
     let abb = bare("abb-irb2600-12-165");
     stands(&abb, [0.0; 6], [1030.0, 0.0, 1260.0], DVec3::X);
     stands(&abb, [0.0, 0.0, -90.0, 0.0, 0.0, 0.0], [35.0, 0.0, 2025.0], DVec3::Z);
@@ -253,7 +253,7 @@ fn hits(reach: &Reach) -> Vec<([Solid; 2], f64)> {
 }
 
 #[test]
-fn what_the_arm_hits_is_told() {
+fn what_the_arm_hits_is_reported() {
     let full = Cell { home: None, ..cell("kuka-kr20-r1810") };
     let body = full.body.clone().unwrap();
     let with = |change: fn(&mut Body), at: PartPlace, track: &Track| {
@@ -416,7 +416,7 @@ fn a_slow_joint_is_found() {
 }
 
 #[test]
-fn a_slow_travel_is_only_told() {
+fn a_slow_travel_is_only_reported() {
     let mut slow = kuka();
     // Between what welding at 10 mm/s and travelling at 100 mm/s need.
     slow.arm.speeds[1] = 1.5;
@@ -432,7 +432,7 @@ fn a_slow_travel_is_only_told() {
 /// A torch at right angles to the flange, and axis 4 held fast: over (1173, 0) at 1150 mm the arm stands in the home
 /// pose, whose J5 is 0.
 #[test]
-fn a_singular_wrist_is_told() {
+fn a_singular_wrist_is_reported() {
     let mut cell = kuka();
     cell.torch.position = [300.0, 0.0, 0.0];
     cell.torch.rotation = [0.0, 90.0, 0.0];

@@ -64,7 +64,7 @@ fn case_1603_the_hybrid_does_not_cross_itself() {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1604_what_is_left_of_the_height_is_told() {
+fn case_1604_what_is_left_of_the_height_is_reported() {
     let mesh = import(&case("box60x60x2.99.stl"), &Task::new()).unwrap().mesh;
     let plan_by = |fit: LayerFit| {
         let mut profile = flat(profile_by("cmt-al2319-kuka", "loop"));

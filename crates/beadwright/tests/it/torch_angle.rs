@@ -125,7 +125,7 @@ fn the_angle_of_reach_is_what_the_program_has() {
 }
 
 #[test]
-fn the_table_stands_in_every_pose_or_the_post_refuses() {
+fn the_table_is_in_every_pose_or_the_dialect_refuses() {
     let mut profile = with_all_dialects("cmt-steel-robots");
     profile.program.table_angle = Some(-35.0);
     let krl = dialect::write("krl", &job(), &profile.job("part")).unwrap();

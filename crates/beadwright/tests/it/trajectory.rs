@@ -6,7 +6,7 @@ use beadwright::robot::{self, Cell, Trajectory};
 use common::{planned, profile};
 
 #[test]
-fn the_arm_stands_where_the_torch_is() {
+fn the_arm_is_where_the_torch_is() {
     for (cell, part) in [("kuka-kr20-r1810", "cross"), ("abb-irb1410", "star")] {
         let (cell, profile) = (Cell::built_in(cell).unwrap(), profile("cmt-al2319-kuka"));
         let plan = planned(part, &profile);

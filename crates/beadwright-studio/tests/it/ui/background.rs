@@ -26,7 +26,7 @@ fn last(planner: &mut Planner) -> Event {
 }
 
 #[test]
-fn a_fault_in_the_planner_is_told_and_it_plans_again() {
+fn a_fault_in_the_planner_is_reported_and_it_plans_again() {
     // The bell is rung in the midst of the work.
     let broken = AtomicBool::new(false);
     let bell = move |_| assert!(broken.swap(true, Ordering::Relaxed), "the bell is cracked");
@@ -40,7 +40,7 @@ fn a_fault_in_the_planner_is_told_and_it_plans_again() {
 }
 
 #[test]
-fn a_fault_in_a_job_is_told() {
+fn a_fault_in_a_job_is_reported() {
     let ctx = Context::default();
     let mut job = Some(Job::<u32>::start(&ctx, || panic!("no {}", "luck")));
     let start = Instant::now();

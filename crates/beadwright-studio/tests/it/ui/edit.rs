@@ -51,7 +51,7 @@ fn a_typed_value_changes_the_plan_and_is_undone_by_keys() {
 }
 
 #[test]
-fn what_cannot_be_is_told_at_its_field_and_changes_nothing() {
+fn an_impossible_value_is_refused_at_its_field_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
     let (project, plan) = (harness.state().project().clone(), planned(&harness));

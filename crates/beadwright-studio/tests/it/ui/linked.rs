@@ -93,7 +93,7 @@ fn the_section_is_chosen_moved_and_turned() {
 }
 
 #[test]
-fn the_arm_stands_at_the_chosen_bead_and_tells_its_joints() {
+fn the_arm_reaches_the_chosen_bead_and_shows_its_joints() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
     harness.state_mut().view().chosen = Some((3, 0, 0));

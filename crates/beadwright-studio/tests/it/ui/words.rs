@@ -147,7 +147,7 @@ fn every_word_is_explained(harness: &mut Window, least: usize, view: &str) {
 }
 
 #[test]
-fn every_word_of_the_figures_is_explained_where_it_stands() {
+fn every_word_of_the_figures_is_explained_where_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
     every_word_is_explained(&mut harness, 4, "totals");

@@ -9,5 +9,11 @@ pub use section::{Fanuc, FanucSpeed};
 use super::Dialect;
 
 /// The row in the table of dialects.
-pub const DIALECT: Dialect =
-    Dialect { name: "fanuc", language: "FANUC TP", external_axes: false, typical: read::typical, read: read::read };
+pub const DIALECT: Dialect = Dialect {
+    name: "fanuc",
+    language: "FANUC TP",
+    module_extensions: &["ls"],
+    external_axes: false,
+    typical: read::typical,
+    read: read::read,
+};

@@ -15,5 +15,11 @@ pub use section::{Gcode, GcodeComments};
 use super::Dialect;
 
 /// The row in the table of dialects.
-pub const DIALECT: Dialect =
-    Dialect { name: "gcode", language: "G-code", external_axes: false, typical: read::typical, read: read::read };
+pub const DIALECT: Dialect = Dialect {
+    name: "gcode",
+    language: "G-code",
+    module_extensions: &[],
+    external_axes: false,
+    typical: read::typical,
+    read: read::read,
+};

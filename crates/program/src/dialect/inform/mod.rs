@@ -9,5 +9,11 @@ pub use section::{Inform, InformSpeed};
 use super::Dialect;
 
 /// The row in the table of dialects.
-pub const DIALECT: Dialect =
-    Dialect { name: "inform", language: "INFORM", external_axes: false, typical: read::typical, read: read::read };
+pub const DIALECT: Dialect = Dialect {
+    name: "inform",
+    language: "INFORM",
+    module_extensions: &["jbi"],
+    external_axes: false,
+    typical: read::typical,
+    read: read::read,
+};

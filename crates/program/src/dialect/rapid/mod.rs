@@ -13,5 +13,11 @@ pub use section::{Rapid, RapidArc, RapidModules, RapidSeam, WireFeedUnit};
 use super::Dialect;
 
 /// The row in the table of dialects.
-pub const DIALECT: Dialect =
-    Dialect { name: "rapid", language: "RAPID", external_axes: true, typical: read::typical, read: read::read };
+pub const DIALECT: Dialect = Dialect {
+    name: "rapid",
+    language: "RAPID",
+    module_extensions: &["mod"],
+    external_axes: true,
+    typical: read::typical,
+    read: read::read,
+};

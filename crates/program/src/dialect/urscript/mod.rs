@@ -9,5 +9,11 @@ pub use section::Urscript;
 use super::Dialect;
 
 /// The row in the table of dialects.
-pub const DIALECT: Dialect =
-    Dialect { name: "urscript", language: "URScript", external_axes: false, typical: read::typical, read: read::read };
+pub const DIALECT: Dialect = Dialect {
+    name: "urscript",
+    language: "URScript",
+    module_extensions: &[],
+    external_axes: false,
+    typical: read::typical,
+    read: read::read,
+};
