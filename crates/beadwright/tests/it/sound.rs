@@ -39,7 +39,8 @@ fn is_sound(plan: &Plan, name: &str) {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1601_walls_stay_in_a_disk_with_holes() {
+fn walls_stay_in_a_disk_with_holes() {
+    // Case 1601.
     for name in ["disk_6holes.stl", "wall_155m.stl"] {
         let plan = planned(name, "wall");
         is_sound(&plan, name);
@@ -50,7 +51,8 @@ fn case_1601_walls_stay_in_a_disk_with_holes() {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1602_no_island_is_lost_by_the_strategy() {
+fn no_island_is_lost_by_the_strategy() {
+    // Case 1602.
     let plan = planned("wall_island_lost.stl", "wall");
     is_sound(&plan, "wall_island_lost");
     assert!(plan.summary.metrics.coverage() > 0.95, "{}", plan.summary.metrics.coverage());
@@ -58,13 +60,15 @@ fn case_1602_no_island_is_lost_by_the_strategy() {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1603_the_hybrid_does_not_cross_itself() {
+fn the_hybrid_does_not_cross_itself() {
+    // Case 1603.
     is_sound(&planned("hybrid_crossing.stl", "hybrid"), "hybrid_crossing");
 }
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1604_what_is_left_of_the_height_is_reported() {
+fn what_is_left_of_the_height_is_reported() {
+    // Case 1604.
     let mesh = import(&case("box60x60x2.99.stl"), &Task::new()).unwrap().mesh;
     let plan_by = |fit: LayerFit| {
         let mut profile = flat(profile_by("cmt-al2319-kuka", "loop"));
