@@ -168,8 +168,8 @@ def main():
                 part = pathlib.Path(folder) / "part.stl"
                 write(make(size), part)
                 found = measured(given.binary, part, FINE if make is thread else PROFILE, pathlib.Path(folder))
-            told = f"{found[0]:9.2f} s {found[1]:7.0f} MB" if found else "  refused"
-            print(f"{name:<22}{size:>12,}{told}", flush=True)
+            figures = f"{found[0]:9.2f} s {found[1]:7.0f} MB" if found else "  refused"
+            print(f"{name:<22}{size:>12,}{figures}", flush=True)
             rows += [(size, *found)] if found else []
         table[name] = {"rows": [dict(zip(("size", "cpu_s", "peak_mb"), row)) for row in rows]}
         if len(rows) > 2:

@@ -30,7 +30,7 @@ CASES = [
 
 
 def model(name, scale, turn, work):
-    """The model as a plain STL file of the wanted size, turned about z by so many degrees."""
+    """The model as a plain STL file of the wanted size, turned about z by that many degrees."""
     data = (MODELS / name).read_bytes()
     data = bytearray(gzip.decompress(data) if name.endswith(".gz") else data)
     if scale != 1 or turn:
@@ -93,8 +93,8 @@ def measured(command, runs):
 
 def version(command):
     """What a program calls itself."""
-    told = subprocess.run(command, capture_output=True, text=True)
-    return next((line for line in (told.stdout + told.stderr).splitlines() if any(c.isdigit() for c in line)), "")
+    done = subprocess.run(command, capture_output=True, text=True)
+    return next((line for line in (done.stdout + done.stderr).splitlines() if any(c.isdigit() for c in line)), "")
 
 
 def mean_ratio(rows, peer, key):

@@ -88,7 +88,7 @@ picture steps '' propeller --view compare --steps --compare-with hybrid --layer 
 picture place '' gear --place --set fill.strategy=hybrid
 picture section '' gear --section y --set fill.strategy=hybrid
 picture robot '' propeller --robot
-# A scan made up: the cross's upper face sags at one end and stands high at the other.
+# A scan made up: the cross's upper face sags at one end and is too high at the other.
 awk 'BEGIN { for (x = -49; x <= 49; x += 0.5) for (y = -49; y <= 49; y += 0.5) if ((x < 0 ? -x : x) < 17 || (y < 0 ? -y : y) < 17)
     print x "," y "," 20 + 0.6 * sin(x / 30) + 0.2 * cos(y / 4) }' > "$work/scan.csv"
 picture scan '' cross --scan "$work/scan.csv"

@@ -1,4 +1,4 @@
-//! Tells tests whether the shared models lie where they look for them: without them those tests are ignored, but not under
+//! Lets tests know whether the shared models lie where they look for them: without them those tests are ignored, but not under
 //! `CI=true`, where they fail.
 
 use std::env;

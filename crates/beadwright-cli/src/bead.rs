@@ -25,7 +25,7 @@ pub(crate) enum Command {
     Solve(Solve),
     /// Fit how thickness and width of walls depend on heat, from walls welded with different waits, and predict others.
     Walls(Walls),
-    /// Check whether a printed table of process values agrees with itself: metal per ampere and second, row by row.
+    /// Check whether a printed table of process values is consistent: metal per ampere and second, row by row.
     CheckTable(CheckTable),
     /// Write invented measurements as CSV, to try out the other commands.
     Example {

@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
     /// Seed of the random numbers.
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Number of builds, with this seed and those after it; the page shows the first.
+    /// Number of builds, with this seed and the ones that follow it; the page shows the first.
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     seeds: u32,
     /// HTML page to write.

@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     /// Draw only this layer, counted from 1, and keep the file's name as it is; for .dxf, .svg and .png.
     #[arg(long, value_name = "LAYER")]
     layer: Option<usize>,
-    /// Also compute how warm the metal ahead of the torch is, as a column of tables and of .vtp.
+    /// Also compute how warm the metal ahead of the torch is: a column in tables and .vtp.
     #[arg(long)]
     temperatures: bool,
 }

@@ -1,4 +1,4 @@
-//! `beadwright guide`: the curve to which the layers of a bent part are square, for `plan --chart`.
+//! `beadwright guide`: the curve to which the layers of a bent part are perpendicular, for `plan --chart`.
 
 use crate::{file, model, profile, progress, say};
 use anyhow::{Context, ensure};

@@ -59,16 +59,16 @@ struct Arguments {
 enum Command {
     /// Plan a model: write the program, plan.json, metrics.json and report.html.
     Plan(plan::Arguments),
-    /// Make the preform of a model: the part with what is milled off again, with its weights, hours and prices.
+    /// Make the preform of a model: the part plus the stock that is milled off afterwards, with weights, hours and prices.
     Preform(preform::Arguments),
-    /// Print the curve to which the layers of a bent part are square, for plan --chart: found in a bent tube or bar that stands on one
-    /// end, or read from a curve (IGES, or a CSV table with the columns x, y, z in mm).
+    /// Print the guide curve of a bent part, to which its layers are perpendicular, for plan --chart: found in a bent tube or bar that
+    /// stands on one end, or read from a curve (IGES, or a CSV table with the columns x, y, z in mm).
     Guide(guide::Arguments),
-    /// Write the surface of a model as the surface over which layers lie (a file for `plan --bodies`).
+    /// Write the surface of a model as one on which layers are stacked (a file for `plan --bodies`).
     Surface(surface::Arguments),
     /// Plan a model with every strategy, and judge them side by side.
     Compare(compare::Arguments),
-    /// Plan many models, with many profiles, strategies and values: one table.
+    /// Plan many models with many profiles, strategies and values, and put the results into one table.
     Batch(batch::Arguments),
     /// Judge a plan, or a program from any source, by what it would build.
     Simulate(simulate::Arguments),
@@ -81,11 +81,11 @@ enum Command {
     Adapt(adapt::Arguments),
     /// Compare a scan of the built part with the part: how far its surface lies outside and inside.
     Deviation(deviation::Arguments),
-    /// Weld a plan in the height model, with errors, to see what feedback from scans is worth.
+    /// Simulate a build with errors in the height model, to see what feedback from scans is worth.
     Build(build::Arguments),
     /// Check whether a robot can weld a plan: joint angles, margins, and a better place for the part.
     Reach(reach::Arguments),
-    /// Compute how warm the metal is before each pass of a plan, and what waiting for a limit costs.
+    /// Compute how warm the metal is before each pass of a plan, and how much time an interpass limit costs.
     Heat(heat::Arguments),
     /// Reproduce the papers' experiments: our results next to theirs.
     Reproduce(reproduce::Arguments),
@@ -98,7 +98,7 @@ enum Command {
     /// List, print or check profiles, or print their JSON schema.
     #[command(subcommand)]
     Profile(profile::Command),
-    /// Print what a shell needs to complete commands, such as `beadwright completions bash`.
+    /// Print the completion script of a shell, such as `beadwright completions bash`.
     Completions(completions::Completions),
     /// Print the manual page, or write the pages of all commands.
     Man(completions::Man),

@@ -49,16 +49,16 @@ pub(crate) struct Arguments {
     /// Meaning of curves that run side by side: the two sides of a wall, or the centre-lines of walls.
     #[arg(long, value_name = "sides|centre", value_parser = ["sides", "centre"])]
     curves: Option<String>,
-    /// How layers lie where they are not level: around an axis, such as cylinder:axis=z,radius=36, on a cone, such as
-    /// cone:axis=-z,tip=0/0/90,angle=30, or square to a direction, such as plane:up=1/0/1; mm and degrees, in the coordinates of the
-    /// part as it stands on the table.
+    /// Shape of layers that are not level: around an axis, such as cylinder:axis=z,radius=36; on a cone, such as
+    /// cone:axis=-z,tip=0/0/90,angle=30; or perpendicular to a direction, such as plane:up=1/0/1. In mm and degrees, in the
+    /// coordinates of the part as it is placed on the table.
     #[arg(long, value_name = "KIND:KEY=VALUE,...", value_parser = parse_chart)]
     chart: Option<Chart>,
-    /// Weld the part as several bodies, one after another, each with layers of its own kind: a file with a table [[body]] for each.
+    /// Weld the part as several bodies, one after another, each with its own shape of layers: a TOML file with a [[body]] table for each.
     #[arg(long, value_name = "FILE", conflicts_with = "chart")]
     bodies: Option<PathBuf>,
-    /// Weld on an existing part, which is not welded itself: a model in the coordinates of the part's file. It is placed with the part,
-    /// stands on the table in its place, and the first layers must lie on it.
+    /// Weld onto an existing part: a model in the coordinates of the part's file. It is placed together with the part and not welded
+    /// itself; the first layers must lie on it.
     #[arg(long, value_name = "MODEL", conflicts_with_all = ["with", "preform", "from_z", "lay_flat", "orient"])]
     onto: Option<PathBuf>,
     /// Make the strategy hybrid follow the paper to the letter.
@@ -69,7 +69,7 @@ pub(crate) struct Arguments {
     /// Change a value of the profile, such as fill.raster_angle=45; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Plan the preform of the part: the part with what is milled off again (section [preform] of the profile).
+    /// Plan the preform of the part: the part plus the stock that is milled off afterwards (section [preform] of the profile).
     #[arg(long)]
     pub(crate) preform: bool,
     /// Plan only what lies above this height of the placed part, mm: the cut then lies on the table.
@@ -101,7 +101,7 @@ pub(crate) struct Arguments {
     /// Grid spacing of the deposit model, mm; a twentieth of the bead width if left out.
     #[arg(long, value_name = "MM", value_parser = parse_grid, conflicts_with = "no_deposit")]
     pub(crate) grid: Option<f64>,
-    /// Write the files even if the program would leave the part, weld over nothing, or drag the torch over beads.
+    /// Write the files even if the program would leave the part, weld in the air, or drag the torch over beads.
     #[arg(long)]
     pub(crate) allow_findings: bool,
     /// Print the metrics as JSON instead of the summary.

@@ -1,4 +1,4 @@
-//! `beadwright preform`: the part with what is milled off again.
+//! `beadwright preform`: the part plus the stock that is milled off afterwards.
 
 use crate::{file, model, profile, progress, remedy, say};
 use anyhow::Context;
@@ -142,7 +142,7 @@ pub(crate) fn remedy(part: &Mesh, profile: &Profile, task: &Task) -> anyhow::Res
     let more = figures.preform_kg - figures.part_kg;
     let percent = 100.0 * more / figures.part_kg;
     Ok(Some(format!(
-        "--preform plans the part with what is milled off again: {more:.3} kg more to weld ({percent:.0} %)."
+        "--preform plans the part plus the stock that is milled off afterwards: {more:.3} kg more to weld ({percent:.0} %)."
     )))
 }
 

@@ -22,7 +22,7 @@ pub(crate) enum Command {
     Show {
         /// Name of the profile.
         name: String,
-        /// Save it as this new file instead, with the schema that lets editors complete keys next to it.
+        /// Save it to this new file instead, next to the schema that lets editors complete keys.
         #[arg(long, short, value_name = "FILE")]
         output: Option<PathBuf>,
     },

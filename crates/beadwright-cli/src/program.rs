@@ -3,7 +3,7 @@
 use crate::profile::{self, Wanted};
 use crate::{file, model};
 use anyhow::Context;
-use beadwright::dialect::reading;
+use beadwright::dialect::{self, reading};
 use beadwright::export::toolpath;
 use beadwright::model::Import;
 use beadwright::plan_file::{self, PlanFile};
@@ -147,11 +147,8 @@ impl Main {
     /// another language than the main file's is not part of it, and the main file's extension comes first.
     fn module(&self, name: &str) -> Option<String> {
         let folder = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
-        let wanted = name.to_ascii_lowercase();
-        let fits = |path: &PathBuf| {
-            let file = path.file_name().map(|f| f.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-            file == wanted || ["src", "mod", "sub", "ls", "jbi"].iter().any(|ext| file == format!("{wanted}.{ext}"))
-        };
+        let fits =
+            |path: &PathBuf| path.file_name().is_some_and(|file| dialect::may_be_module(&file.to_string_lossy(), name));
         let mut files: Vec<PathBuf> =
             fs::read_dir(folder).ok()?.filter_map(|e| Some(e.ok()?.path())).filter(fits).collect();
         let other = |path: &Path| path.extension().map(|e| e.to_ascii_lowercase()) != self.extension;

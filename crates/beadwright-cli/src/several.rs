@@ -21,7 +21,7 @@ pub(crate) struct Several {
     /// [torch] of the profile) would hit a finished part.
     #[arg(long, value_enum, default_value_t = Order::Layers, requires = "with")]
     pub(crate) order: Order,
-    /// Write one plan with one program, or a plan and a program for each part into its own folder; with --order parts.
+    /// Write one plan with one program, or a plan and a program for each part into its own folder (with --order parts).
     #[arg(long, value_enum, default_value_t = Programs::One, requires = "with")]
     pub(crate) programs: Programs,
 }

@@ -13,13 +13,13 @@ use std::sync::Arc;
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
-    /// Direction along which the surface is seen, and over it layers follow one another.
+    /// Direction in which the layers are stacked; the surface is what is seen against it.
     #[arg(long, value_name = "X/Y/Z", default_value = "z", allow_hyphen_values = true)]
     up: String,
-    /// Distance of the heights that are taken, mm; what is finer is smoothed.
+    /// Spacing of the grid on which heights are sampled, mm; finer detail is smoothed out.
     #[arg(long, value_name = "MM", default_value_t = 5.0, value_parser = parse_step)]
     step: f64,
-    /// File of bodies to write, with one body whose layers lie over the surface; standard output if left out.
+    /// File of bodies to write, with one body whose layers follow the surface; standard output if left out.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
     #[command(flatten)]

@@ -62,7 +62,7 @@ impl BeadLibrary {
         let values = self.0.arrange(&values).refuse(None)?;
         let found = self.0.predict(&values).refuse(None)?;
         let height = layering(overlap, found.width.value)?.height(&found);
-        Ok(pythonize::pythonize(py, &self.told(&values, &found, height, &[]))?)
+        Ok(pythonize::pythonize(py, &self.as_json(&values, &found, height, &[]))?)
     }
 
     /// Parameters for a wanted bead; `limits` are names with least and greatest value, `tolerance` is relative.
@@ -80,8 +80,8 @@ impl BeadLibrary {
         let layering = layering(overlap, width)?;
         let wish = Wish { width, layer_height, layering, limits, tolerance };
         let recipe = self.0.solve(&wish).refuse(None)?;
-        let told = self.told(&recipe.values, &recipe.prediction, recipe.layer_height, &recipe.notes);
-        Ok(pythonize::pythonize(py, &told)?)
+        let recipe_json = self.as_json(&recipe.values, &recipe.prediction, recipe.layer_height, &recipe.notes);
+        Ok(pythonize::pythonize(py, &recipe_json)?)
     }
 
     /// Width over height of the beads over their inputs, as a picture.
@@ -91,7 +91,7 @@ impl BeadLibrary {
 }
 
 impl BeadLibrary {
-    fn told(&self, values: &[f64], found: &Prediction, layer_height: f64, notes: &[String]) -> Value {
+    fn as_json(&self, values: &[f64], found: &Prediction, layer_height: f64, notes: &[String]) -> Value {
         let inputs = self.0.inputs.iter().zip(values);
         let parameters: serde_json::Map<String, Value> =
             inputs.map(|(input, value)| (input.name.clone(), json!({ "value": value, "unit": input.unit }))).collect();

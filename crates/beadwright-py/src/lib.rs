@@ -51,7 +51,7 @@ mod _core {
     #[pymodule_export]
     use crate::profile::{Profile, profile_names, strategy_names};
     #[pymodule_export]
-    use crate::program::{language, named_profile, simulate};
+    use crate::program::{language, may_be_module, named_profile, simulate};
     #[pymodule_export]
     use crate::reach::{Reach, cell_names, cell_text, reach};
 

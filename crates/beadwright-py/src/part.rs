@@ -78,12 +78,12 @@ fn unit_of(unit: &str) -> PyResult<Units> {
 
 /// The size of a model whose unit was not given, before it is turned.
 fn guessed_size(model: &Model, placement: &Placement) -> Option<DVec3> {
-    let (told, size) = match model {
+    let (declared, size) = match model {
         Model::Mesh(import) => (import.units, import.mesh.size()),
         Model::Outlines(outlines) => (outlines.units, outlines.size().extend(0.0)),
         Model::Curves(_) => return None,
     };
-    placement.units.or(told).is_none().then_some(size * placement.scale)
+    placement.units.or(declared).is_none().then_some(size * placement.scale)
 }
 
 #[pymethods]
@@ -115,7 +115,7 @@ impl Part {
         let (vertices, triangles) = (vertices.to_vec(py)?, triangles.to_vec(py)?);
         let corners: Vec<DVec3> = vertices.as_chunks::<3>().0.iter().copied().map(DVec3::from_array).collect();
         let triangles = triangles.as_chunks::<3>().0.to_vec();
-        let import = solid(corners, triangles).map_err(|told| raise(&told, Some(&name), None))?;
+        let import = solid(corners, triangles).map_err(|error| raise(&error, Some(&name), None))?;
         Self::of(name, Model::Mesh(import), placing)
     }
 

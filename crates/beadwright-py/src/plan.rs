@@ -84,8 +84,8 @@ impl Plan {
     /// The summed events, each with its sentence.
     #[getter]
     fn warnings<'py>(&self, py: Python<'py>) -> PyResult<Vec<(Bound<'py, PyAny>, String)>> {
-        let told = |w: &beadwright::warning::WarningSummary| Ok((pythonize::pythonize(py, w)?, w.sentence()));
-        self.0.summary.warnings.summaries().map(told).collect()
+        let with_sentence = |w: &beadwright::warning::WarningSummary| Ok((pythonize::pythonize(py, w)?, w.sentence()));
+        self.0.summary.warnings.summaries().map(with_sentence).collect()
     }
 
     /// What does not fit together in the profile, and why the strategy is not the profile's, as sentences.

@@ -34,8 +34,8 @@ pub(crate) fn strategy_names() -> Vec<&'static str> {
 fn parse(text: &str, base: &Bound<'_, PyAny>) -> PyResult<Result<profile::Profile, ProfileError>> {
     let mut raised = None;
     let parsed = profile::Profile::parse_with(text, &mut |name| {
-        let told = base.call1((name,)).and_then(|told| told.extract::<Option<String>>());
-        match told {
+        let found = base.call1((name,)).and_then(|text| text.extract::<Option<String>>());
+        match found {
             Ok(Some(text)) => Ok(text),
             Ok(None) => Ok(profile::Profile::built_in_text(name)?.to_owned()),
             Err(error) => {

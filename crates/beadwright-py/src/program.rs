@@ -6,6 +6,7 @@ use crate::part::Part;
 use crate::profile::Profile;
 use crate::running::Running;
 use beadwright::compare;
+use beadwright::dialect;
 use beadwright::dialect::reading::{self, Fault};
 use beadwright::read_back::{self, ReadBack};
 use pyo3::prelude::*;
@@ -17,6 +18,12 @@ type Reading = (Vec<String>, Vec<String>, Option<f64>, bool);
 #[pyfunction]
 pub(crate) fn language(text: &str) -> Option<&'static str> {
     reading::recognise(text).map(|dialect| dialect.language)
+}
+
+/// Whether a file may be the module `name` of a program, in any language.
+#[pyfunction]
+pub(crate) fn may_be_module(file: &str, name: &str) -> bool {
+    dialect::may_be_module(file, name)
 }
 
 /// The built-in profile that a program of ours names in its first comments.
@@ -45,8 +52,8 @@ pub(crate) fn simulate<'py>(
     let mesh = part.and_then(|part| part.part.mesh());
     let mut raised = None;
     let mut find = |name: &str| {
-        let told = Python::attach(|py| module.call1(py, (name,))?.extract::<Option<String>>(py));
-        told.unwrap_or_else(|error| {
+        let found = Python::attach(|py| module.call1(py, (name,))?.extract::<Option<String>>(py));
+        found.unwrap_or_else(|error| {
             raised = Some(error);
             None
         })

@@ -80,8 +80,8 @@ class Command:
 @pytest.fixture(scope="session")
 def command() -> Command:
     """The command beadwright: BEADWRIGHT_COMMAND, or built from this checkout."""
-    if told := os.environ.get("BEADWRIGHT_COMMAND"):
-        return Command(Path(told))
+    if command := os.environ.get("BEADWRIGHT_COMMAND"):
+        return Command(Path(command))
     if shutil.which("cargo") is None:
         pytest.skip("neither BEADWRIGHT_COMMAND nor cargo is there to compare with")
     subprocess.run(["cargo", "build", "--quiet", "-p", "beadwright-cli"], cwd=ROOT, check=True)

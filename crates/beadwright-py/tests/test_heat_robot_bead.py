@@ -113,7 +113,7 @@ def test_a_wanted_bead_is_found_within_the_limits(library: BeadLibrary) -> None:
     assert 100 <= found.parameters["current"] <= 140
 
 
-def test_outside_the_measurements_nothing_is_told(library: BeadLibrary) -> None:
+def test_outside_the_measurements_nothing_is_predicted(library: BeadLibrary) -> None:
     first, second = (each["name"] for each in library.values["inputs"])
     with pytest.raises(BeadwrightError):
         library.predict({first: 500, second: 8})

@@ -188,7 +188,7 @@ def test_a_file_cut_short_is_refused_or_taken_as_it_is(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("vertices", "faces", "told"),
+    ("vertices", "faces", "message"),
     [
         ([[0, 0], [1, 0]], [[0, 1, 1]], r"vertices have the shape \(2, 2\)"),
         ([[0, 0, 0]], [[0, 0, 1]], "names vertex 1; there are 1"),
@@ -198,8 +198,8 @@ def test_a_file_cut_short_is_refused_or_taken_as_it_is(tmp_path: Path) -> None:
         ([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]], "nothing to build"),
     ],
 )
-def test_triangles_that_cannot_be(vertices: object, faces: object, told: str) -> None:
-    with pytest.raises(BeadwrightError, match=told):
+def test_triangles_that_cannot_be(vertices: object, faces: object, message: str) -> None:
+    with pytest.raises(BeadwrightError, match=message):
         Part.from_triangles(vertices, faces)  # type: ignore[arg-type]
 
 

@@ -135,18 +135,18 @@ def test_a_quarter_turn_and_a_mirror_change_nothing(strategy: str) -> None:
             assert other.metrics[name] == pytest.approx(as_is.metrics[name], rel=near), name
 
 
-def test_thin_walls_are_told_with_their_place() -> None:
+def test_thin_walls_are_reported_with_their_place() -> None:
     corners, faces = prism([(0, 0), (60, 0), (60, 40), (0, 40)], 6)
     fin, more = prism([(100, 0), (101, 0), (101, 40), (100, 40)], 6)
     part = Part.from_triangles(np.vstack([corners, fin]), np.vstack([faces, more + len(corners)]))
     plan = beadwright.plan(part, strategy="contour")
-    [told] = [warning for warning in plan.warnings if warning.kind == "island-too-small"]
-    assert told.layers == [(0, 2)]
-    assert told.count == 3
-    assert told.total == pytest.approx(3 * 40)
-    assert 100 <= told.place[0] <= 101
-    assert "narrower bead" in told.remedy
-    assert told.sentence.endswith(told.remedy)
+    [warning] = [warning for warning in plan.warnings if warning.kind == "island-too-small"]
+    assert warning.layers == [(0, 2)]
+    assert warning.count == 3
+    assert warning.total == pytest.approx(3 * 40)
+    assert 100 <= warning.place[0] <= 101
+    assert "narrower bead" in warning.remedy
+    assert warning.sentence.endswith(warning.remedy)
 
 
 def test_the_strategy_takes_the_place_of_the_profiles(contours: Plan, cross: Plan) -> None:

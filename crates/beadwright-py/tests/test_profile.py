@@ -20,9 +20,9 @@ def test_built_in_profiles_are_read() -> None:
 
 def test_values_are_those_of_the_text() -> None:
     profile = Profile("cmt-al2319-kuka")
-    told = tomllib.loads(profile.text)
-    assert profile["bead.width"] == told["bead"]["width"]
-    assert profile.values["layers"]["height"] == told["layers"]["height"]
+    read = tomllib.loads(profile.text)
+    assert profile["bead.width"] == read["bead"]["width"]
+    assert profile.values["layers"]["height"] == read["layers"]["height"]
     with pytest.raises(KeyError):
         profile["bead.colour"]
 
@@ -65,7 +65,7 @@ def test_a_name_that_is_not_there_names_the_nearest() -> None:
         Profile("cmt-al2319-kuk")
 
 
-def test_text_tells_the_line() -> None:
+def test_errors_in_text_name_the_line() -> None:
     text = Profile().text.replace("width = 7.54", "width = = 7.54")
     line = text.splitlines().index(next(each for each in text.splitlines() if "= =" in each)) + 1
     with pytest.raises(BeadwrightError) as caught:

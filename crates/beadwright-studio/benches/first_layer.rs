@@ -108,7 +108,7 @@ fn draw(plan: &PlanState, state: &RenderState) -> Result<(), String> {
     view.time_frame(state, &plan.scene, &Style::default(), PIXELS, false).map(|_| ())
 }
 
-/// The most memory this process ever held, MiB; 0 where the system does not tell.
+/// The most memory this process ever held, MiB; 0 where the system does not say.
 fn peak_mib() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -115,7 +115,7 @@ fn longest_pick(scene: &Scene, style: &Style, view: &View3d, size: DVec2) -> f64
     places.map(time).fold(0.0, f64::max)
 }
 
-/// The most memory this process ever held, MiB; 0 where the system does not tell.
+/// The most memory this process ever held, MiB; 0 where the system does not say.
 fn peak_mib() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -28,7 +28,7 @@ struct Arguments {
     /// Show heights and voids in the layer view.
     #[arg(long)]
     heights: bool,
-    /// Show how the strategy comes to its passes in the layer view.
+    /// Show in the layer view how the strategy arrives at its passes.
     #[arg(long)]
     steps: bool,
     /// Show the handles that move and turn the part.

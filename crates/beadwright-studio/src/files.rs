@@ -84,10 +84,10 @@ impl Studio {
     /// Writes into a folder: a program, a file of the plan, or everything that `beadwright plan` writes.
     pub fn export(&mut self, what: &Export, folder: &Path) {
         let done = what.write(&self.plans.own, folder);
-        self.told(folder, done);
+        self.report(folder, done);
     }
 
-    fn told(&mut self, folder: &Path, done: Result<Vec<String>, String>) {
+    fn report(&mut self, folder: &Path, done: Result<Vec<String>, String>) {
         const SHOWN: usize = 4;
         match done {
             Ok(names) => {

@@ -42,7 +42,7 @@ pub struct Project {
     pub source: Option<Source>,
     /// How the model is placed.
     pub placement: Placement,
-    /// Whether the preform of the model is planned: the part with what is milled off again.
+    /// Whether the preform of the model is planned: the part plus the stock that is milled off afterwards.
     pub preform: bool,
     /// Height of a wall given by curves at a single height, mm.
     pub height: Option<f64>,

@@ -22,15 +22,15 @@ pub fn main() {
     if let Some(window) = web_sys::window() {
         spawn_local(async move {
             if let Err(error) = start(window).await {
-                let _ = Reflect::apply(&told(), &JsValue::UNDEFINED, &js_sys::Array::of1(&error));
+                let _ = Reflect::apply(&explain(), &JsValue::UNDEFINED, &js_sys::Array::of1(&error));
             }
         });
     }
 }
 
-/// The function `tell` of the page, which shows why there is no studio.
-fn told() -> js_sys::Function {
-    Reflect::get(&global(), &"tell".into()).unwrap_or_default().unchecked_into()
+/// The function `explain` of the page, which shows why there is no studio.
+fn explain() -> js_sys::Function {
+    Reflect::get(&global(), &"explain".into()).unwrap_or_default().unchecked_into()
 }
 
 async fn start(window: Window) -> Result<(), JsValue> {
@@ -93,17 +93,17 @@ impl Page {
         if let Some(Failure::Units(text) | Failure::Height(text) | Failure::Sentence(text)) = &plan.failure {
             return text.clone();
         }
-        let stands = match (&plan.progress, &plan.findings) {
+        let state = match (&plan.progress, &plan.findings) {
             (Some((stage, _)), _) => format!("{part}: {}, {} layers", stage.name(), plan.layers.len()),
             (None, Some(findings)) => format!("{part}: {} layers, {} findings", plan.layers.len(), findings.len()),
             (None, None) if plan.part.is_some() => format!("{part}: stopped"),
             (None, None) => "No part is planned".to_owned(),
         };
-        let told = self.studio.messages().last().map_or(String::new(), |message| format!(" {}", message.text));
-        format!("{stands}.{told}")
+        let last = self.studio.messages().last().map_or(String::new(), |message| format!(" {}", message.text));
+        format!("{state}.{last}")
     }
 
-    fn tell(&mut self) {
+    fn announce(&mut self) {
         let sentence = self.sentence();
         if sentence != self.said {
             if let Some(status) = &self.status {
@@ -121,6 +121,6 @@ impl Page {
 impl eframe::App for Page {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         self.studio.ui(ui, frame);
-        self.tell();
+        self.announce();
     }
 }

@@ -40,7 +40,7 @@ const PLANS: [(&str, f64, &str, &str, f64); 20] = [
     ("body_structure_top", 1.0, WELD, "contour", 0.0),
     ("pulley_t30", 1.0, FINE, "compound", 0.0),
 ];
-/// So many layers of each plan, spread over its height.
+/// That many layers of each plan, spread over its height.
 const LAYERS: usize = 12;
 
 fn main() {

@@ -30,7 +30,7 @@ const PARTS: [(&str, f64); 8] = [
     ("bunny_closed.stl", 1.0),
 ];
 
-/// Voids count where a disc of so many bead widths fits.
+/// Voids count where a disc of that many bead widths fits.
 const DISC: f64 = 1.4;
 
 fn main() {

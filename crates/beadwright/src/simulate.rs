@@ -60,9 +60,9 @@ fn pass(
         points.push(pair[1]);
         let of_volume = |volume: f64| nominal.bead.section.width_of(bead_height, volume / length);
         let of_pace = |pace: f64| law.width_of_area(&nominal.bead, nominal.bead.area() * nominal.pace / pace);
-        let told = read.volume[i].map(of_volume).or(read.width[i]);
+        let written = read.volume[i].map(of_volume).or(read.width[i]);
         let pace = Some(read.speed[i] / rate).filter(|pace| *pace > 0.0);
-        let own = told.or_else(|| pace.map(of_pace));
+        let own = written.or_else(|| pace.map(of_pace));
         let own = own.map(|own| own.clamp(WIDTHS.0 * nominal.bead.width, WIDTHS.1 * nominal.bead.width));
         widths.push(width.or(own).unwrap_or(nominal.bead.width));
         paces.push(match read.volume[i] {

@@ -172,11 +172,11 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     for (part, size, scale) in FIGURE_8 {
         let entries = LAID_8.map(|(strategy, ends, ..)| Case { part, scale, strategy, ends, ..CROSS }.judged(task));
         let entries = entries.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let told = || LAID_8.iter().zip(&entries);
-        let rows: Vec<Row> = told().map(|((_, _, name, words), entry)| row(name, words, entry)).collect();
+        let laid = || LAID_8.iter().zip(&entries);
+        let rows: Vec<Row> = laid().map(|((_, _, name, words), entry)| row(name, words, entry)).collect();
         page.text(&format!("Of {size}:"));
         page.table(&FIGURES, &rows);
-        let maps: Vec<_> = told().map(|((_, _, name, _), e)| ((*name).to_owned(), vec![picture(e)])).collect();
+        let maps: Vec<_> = laid().map(|((_, _, name, _), e)| ((*name).to_owned(), vec![picture(e)])).collect();
         page.maps(&[size.to_owned()], &maps);
     }
     let lines = goals.iter().map(Goal::line).chain(specimens.iter().map(|(name, words, [e, _])| line(name, words, e)));

@@ -426,8 +426,8 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
     };
     let count = |value: &dyn Fn(&Figures) -> f64, (aim, off): (f64, f64)| {
         let (low, high) = (least(value), worst(value));
-        let told = if low == high { format!("{low}") } else { format!("{low} to {high}") };
-        (told, low >= aim - off && high <= aim + off)
+        let text = if low == high { format!("{low}") } else { format!("{low} to {high}") };
+        (text, low >= aim - off && high <= aim + off)
     };
     let (gourd, gourd_fits) = count(&|f| f.gourd_by_pot as f64, (168.0, 3.0));
     let (pot, pot_fits) = count(&|f| f.pot_by_gourd as f64, (66.0, 1.0));
@@ -580,8 +580,8 @@ const PLACE_HEAD: [&str; 5] =
     ["lowest to highest over the mean, 8 layers", "corners", "junctions of the outer walls", "middle", "elsewhere"];
 
 fn place_row(name: &str, frame: &Frame) -> Row {
-    let told = |h: Heights| (format!("{:.2} to {:.2}", h.low, h.high), h.within(BAND));
-    [(name.to_owned(), false)].into_iter().chain(frame.places.map(told)).collect()
+    let text = |h: Heights| (format!("{:.2} to {:.2}", h.low, h.high), h.within(BAND));
+    [(name.to_owned(), false)].into_iter().chain(frame.places.map(text)).collect()
 }
 
 /// Why corners are not within [`BAND`], after several ways were tried by searches over thousands of curves in the model of an endless
@@ -602,7 +602,7 @@ fn window(figures: &Figures) -> String {
         let inside = range.0 >= low - 0.005 && range.1 <= high + 0.05;
         if inside { "inside" } else { "outside" }
     };
-    let told = |built: &Built| {
+    let text = |built: &Built| {
         let (ratio, current, (low, high)) = (built.wall.ratio(), built.part.current, built.speeds);
         format!(
             "{}: λ {ratio:.2} ({}), {current} A ({}), {low:.1} to {high:.1} mm/s ({})",
@@ -612,7 +612,7 @@ fn window(figures: &Figures) -> String {
             place(built.speeds, WINDOW[2]),
         )
     };
-    let parts: Vec<String> = figures.built.iter().map(told).collect();
+    let parts: Vec<String> = figures.built.iter().map(text).collect();
     format!(
         "The paper's window of good beads is λ = 2.5 to 3 at 100 to 150 A and 6 to 10 mm/s. The four plans: {}.",
         parts.join("; ")

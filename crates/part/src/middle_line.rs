@@ -18,7 +18,7 @@ pub enum NoMiddleLine {
     /// Stopped by the caller.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// The part stands on several sections, or on none.
+    /// The part rests on several sections, or on none.
     #[error(
         "the part stands on {0} sections; a tube or bar stands on one. Turn it so that one end stands on the table"
     )]

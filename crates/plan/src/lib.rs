@@ -14,7 +14,7 @@
 //! | [`weld`] | passes with start and stop, and the moves between them |
 //! | [`heat`] | temperatures before and along passes, and waits within a limit |
 //! | [`limit`] | the range of every number of a profile, with its reason |
-//! | [`preform`] | a part with what is milled off again, and the way up in which that costs least |
+//! | [`preform`] | a part plus the stock that is milled off afterwards, and the way up in which that costs least |
 //! | [`random`] | seeded random numbers |
 
 pub mod bead;

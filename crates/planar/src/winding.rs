@@ -318,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_lie_in_the_ring_around_them_and_islands_in_holes_stand_alone() {
+    fn holes_lie_in_the_ring_around_them_and_islands_in_holes_are_alone() {
         let hole = |ring: Vec<DVec2>| ring.into_iter().rev().collect();
         let rings =
             [square(0.0, 0.0, 20.0), hole(square(2.0, 2.0, 16.0)), square(5.0, 5.0, 8.0), hole(square(6.0, 6.0, 3.0))];

@@ -45,7 +45,7 @@ pub struct OpwTable {
     pub c3: f64,
     /// From the wrist to the flange, mm.
     pub c4: f64,
-    /// What each joint shows when the arm stands straight up, with its sign: model angle = sign × shown − offset, °.
+    /// What each joint shows when the arm points straight up, with its sign: model angle = sign × shown − offset, °.
     pub offsets: Joints,
     /// 1 where the maker's positive direction is that of the model, −1 where not.
     pub signs: [i8; 6],

@@ -89,7 +89,7 @@ impl Opw {
         self.lengths.a2.atan2(self.lengths.c3)
     }
 
-    /// Angles of the model, rad: all 0 when the arm stands straight up.
+    /// Angles of the model, rad: all 0 when the arm points straight up.
     fn model(&self, joints: &Joints) -> [f64; 6] {
         let mut model = *joints;
         if self.parallelogram {

@@ -1,5 +1,5 @@
 //! Files and arguments that once broke the program, led to wrong plans or took all memory: each is refused with one sentence
-//! or planned with its doubts told first. The files lie in the shared folder (`BEADWRIGHT_CASES`).
+//! or planned with its doubts reported first. The files lie in the shared folder (`BEADWRIGHT_CASES`).
 
 use crate::common::beadwright;
 use std::fs;
@@ -42,7 +42,8 @@ fn check(name: &str, arguments: &[&str], status: i32, words: &[&str]) -> String 
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1620_files_that_lie_are_refused_and_taken_on_demand() {
+fn files_that_lie_are_refused_and_taken_on_demand() {
+    // Case 1620.
     for (name, words) in [
         ("ascii_cut_after_12_of_24.stl", "without \"endsolid\""),
         ("header_count_12_of_24.stl", "announce 12 triangles, but 12 more follow"),
@@ -55,7 +56,8 @@ fn case_1620_files_that_lie_are_refused_and_taken_on_demand() {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1621_coordinates_out_of_all_bounds_are_refused() {
+fn coordinates_out_of_all_bounds_are_refused() {
+    // Case 1621.
     check("coord_1e9.igs", &["plan", "CASE", "--height", "20"], 1, &["m from the origin"]);
     check("coord_1e300.igs", &["plan", "CASE", "--height", "20"], 1, &["m from the origin"]);
     for command in ["inspect", "simulate"] {
@@ -66,7 +68,8 @@ fn case_1621_coordinates_out_of_all_bounds_are_refused() {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1622_bombs_are_stopped() {
+fn bombs_are_stopped() {
+    // Case 1622.
     check("krl_callbomb.src", &["inspect", "CASE"], 1, &["million moves"]);
     // Its circles run through points of one line; those of a true circle are counted in `tests/it/readback.rs`.
     check("krl_arcbomb.src", &["inspect", "CASE"], 1, &["line 5: no circle runs through"]);
@@ -99,7 +102,8 @@ fn case_1622_bombs_are_stopped() {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1623_plans_that_cannot_be_are_refused() {
+fn plans_that_cannot_be_are_refused() {
+    // Case 1623.
     for (name, words) in [
         ("units_in.json", "is in \"in\""),
         ("no_layers.json", "holds no layers"),
@@ -115,7 +119,8 @@ fn case_1623_plans_that_cannot_be_are_refused() {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1624_reasons_are_the_true_ones() {
+fn reasons_are_the_true_ones() {
+    // Case 1624.
     check("open_side.stl", &["plan", "CASE"], 1, &["the surface of the part is open", "--surface wall"]);
     let said = check("prof_no_krl.toml", &["profile", "check", "CASE"], 1, &["has no [krl] section"]);
     let plan = check("box40x60.stl", &["plan", "CASE", "-p", &case("prof_no_krl.toml")], 1, &["has no [krl] section"]);
@@ -130,7 +135,8 @@ fn case_1624_reasons_are_the_true_ones() {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1625_programs_that_nobody_should_start_are_not_written() {
+fn programs_that_nobody_should_start_are_not_written() {
+    // Case 1625.
     let clearance = ["--set", "travel.clearance=0"];
     let plan = ["plan", "CASE", "--no-deposit"];
     check("box40x60.stl", &[&plan[..], &clearance].concat(), 3, &["should not be started", "travel.clearance = 0"]);
@@ -147,7 +153,8 @@ fn case_1625_programs_that_nobody_should_start_are_not_written() {
 }
 
 #[test]
-fn case_1626_plans_are_checked_with_the_profile_that_they_carry() {
+fn plans_are_checked_with_the_profile_that_they_carry() {
+    // Case 1626.
     let folder = TempDir::new().unwrap();
     let ok = |arguments: &[&str]| {
         let output = beadwright(folder.path(), arguments);
@@ -193,8 +200,8 @@ fn case_1626_plans_are_checked_with_the_profile_that_they_carry() {
         "-o",
         "fdm",
     ]);
-    let told = ok(&["inspect", "fdm/plate.gcode"]);
-    assert!(told.contains("Read with the profile fdm-abs-0.4 (the program names it)"), "{told}");
+    let printed = ok(&["inspect", "fdm/plate.gcode"]);
+    assert!(printed.contains("Read with the profile fdm-abs-0.4 (the program names it)"), "{printed}");
     fs::write(folder.path().join("other.gcode"), "G21\nG90\nM83\nG1 X0 Y0 Z0.2 F600\nG1 X20 E1\n").unwrap();
     let asked = beadwright(folder.path(), &["simulate", "other.gcode"]);
     let said = String::from_utf8_lossy(&asked.stderr).into_owned();
@@ -205,7 +212,8 @@ fn case_1626_plans_are_checked_with_the_profile_that_they_carry() {
 }
 
 #[test]
-fn case_1627_text_of_any_system_is_read() {
+fn text_of_any_system_is_read() {
+    // Case 1627.
     let folder = TempDir::new().unwrap();
     let facet = "facet normal 0 0 0\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet\n";
     let (o, x, y, z) = ("0 0 0", "90 0 0", "0 90 0", "0 0 90");

@@ -66,12 +66,14 @@ fn rows_are_the_plans_of_the_command() {
         ["batch", "cross.stl", "star.stl", "-p", profiles[0], "-p", profiles[1], "-s", "zigzag", "-s", "contour"];
     let rest =
         ["--sweep", "layers.height=1.8:2.2:2", "--grid", "1", "--turn", "0,0,30", "-o", "rows.json", "--threads", "3"];
-    let told = ok(at, &[&batch[..], &rest].concat());
+    let printed = ok(at, &[&batch[..], &rest].concat());
     let rows: Vec<Value> = serde_json::from_str(&fs::read_to_string(at.join("rows.json")).unwrap()).unwrap();
     assert_eq!(rows.len(), 16);
     assert!(
-        told.contains("layers.height mm") && told.contains("time min") && told.contains("16 rows in rows.json"),
-        "{told}"
+        printed.contains("layers.height mm")
+            && printed.contains("time min")
+            && printed.contains("16 rows in rows.json"),
+        "{printed}"
     );
     let mut rows = rows.iter();
     for file in ["cross.stl", "star.stl"] {
@@ -112,8 +114,8 @@ fn all_formats_are_the_same_with_any_number_of_threads() {
             let file = format!("{threads}.{format}");
             let batch =
                 ["batch", "cross.stl", "gear.stl", "-s", "zigzag", "--grid", "1", "-o", &file, "--threads", threads];
-            let told = ok(folder.path(), &[&batch[..], &["--sweep", "fill.raster_angle=0:45:2"]].concat());
-            (told.replace(&file, "the file"), fs::read_to_string(folder.path().join(file)).unwrap())
+            let printed = ok(folder.path(), &[&batch[..], &["--sweep", "fill.raster_angle=0:45:2"]].concat());
+            (printed.replace(&file, "the file"), fs::read_to_string(folder.path().join(file)).unwrap())
         };
         ["csv", "json", "html"].map(write)
     };
@@ -147,7 +149,7 @@ fn all_formats_are_the_same_with_any_number_of_threads() {
 
 /// A file that cannot be read and a value that is impossible end with a sentence in their rows; the others are planned.
 #[test]
-fn what_fails_stands_in_its_row() {
+fn what_fails_is_in_its_row() {
     let folder = folder_with(&["cross"]);
     let at = folder.path();
     fs::write(at.join("letter, not a \"part\".stl"), "hello").unwrap();
@@ -162,13 +164,13 @@ fn what_fails_stands_in_its_row() {
     assert!(problems[2].is_empty() && rows[3][0] == "cross.stl", "{problems:?}");
     assert!(problems[3].contains("layers.height = 90 is impossible") && problems[3].contains("mm"), "{problems:?}");
     assert!(problems[4].contains("missing.stl"), "{problems:?}");
-    let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert_eq!(told.matches("  error: ").count(), 5, "{told}");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(printed.matches("  error: ").count(), 5, "{printed}");
 }
 
-/// A block that floats is planned, but should not be welded: its figures and the reason are told, the status is 3.
+/// A block that floats is planned, but should not be welded: its figures and the reason are printed, the status is 3.
 #[test]
-fn what_should_not_be_welded_is_told() {
+fn what_should_not_be_welded_is_reported() {
     let folder = TempDir::new().unwrap();
     let (foot, lid) = (block([0.0; 3], [60.0, 40.0, 4.0]), block([0.0, 0.0, 14.0], [60.0, 40.0, 18.0]));
     fs::write(folder.path().join("floating.stl"), format!("solid a\n{foot}{lid}endsolid a\n")).unwrap();
@@ -177,13 +179,13 @@ fn what_should_not_be_welded_is_told() {
     assert_eq!(output.status.code(), Some(3), "{output:?}");
     let rows: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("rows.json")).unwrap()).unwrap();
     assert!(rows[0]["error"].is_null() && rows[0]["metrics"]["arc_starts"].as_u64() > Some(0));
-    let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(told.contains("should not be welded: ") && told.contains("no bead lies below"), "{told}");
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(printed.contains("should not be welded: ") && printed.contains("no bead lies below"), "{printed}");
     assert!(String::from_utf8_lossy(&output.stderr).contains("1 of 1 plans should not be welded as they are"));
 }
 
 #[test]
-fn wrong_usage_is_told_before_anything_is_planned() {
+fn wrong_usage_is_refused_before_anything_is_planned() {
     let folder = folder_with(&["cross"]);
     for (arguments, status, part) in [
         (&["-o", "rows.txt"][..], 2, ".csv, .json or .html"),

@@ -57,7 +57,7 @@ fn an_example_comes_with_its_bodies() {
 }
 
 #[test]
-fn a_part_stands_on_an_existing_one_wherever_both_lie() {
+fn a_part_rests_on_an_existing_one_wherever_both_lie() {
     let folder = TempDir::new().unwrap();
     block(&folder.path().join("base.stl"), [100.0, 40.0, -12.0], [260.0, 150.0, 0.0]);
     block(&folder.path().join("boss.stl"), [150.0, 80.0, 0.0], [210.0, 120.0, 15.0]);

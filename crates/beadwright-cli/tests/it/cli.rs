@@ -208,7 +208,7 @@ fn profiles_are_listed_shown_checked_and_described() {
 }
 
 #[test]
-fn inspect_tells_what_a_mesh_holds() {
+fn inspect_says_what_a_mesh_holds() {
     let folder = folder_with("gear");
     let json: serde_json::Value = serde_json::from_str(&ok(folder.path(), &["inspect", "gear.stl", "--json"])).unwrap();
     assert_eq!((json["format"].as_str(), json["repair"]["shells"].as_u64()), (Some("binary STL"), Some(1)));
@@ -260,15 +260,15 @@ fn check_adds_nothing_to_a_plan_just_written() {
         let checked = beadwright(out.path(), &["check", "out/plan.json", "--json"]);
         let found: Vec<serde_json::Value> = serde_json::from_slice(&checked.stdout).unwrap();
         let report = fs::read_to_string(out.path().join("out/report.html")).unwrap();
-        let told = metrics["findings"].as_array().unwrap();
+        let listed = metrics["findings"].as_array().unwrap();
         // The same list everywhere, the worst first; each check once, with as many as `check` finds.
-        let order = ["serious", "doubt", "note"].map(|word| told.iter().rposition(|f| f["severity"] == word));
-        let firsts = ["serious", "doubt", "note"].map(|word| told.iter().position(|f| f["severity"] == word));
+        let order = ["serious", "doubt", "note"].map(|word| listed.iter().rposition(|f| f["severity"] == word));
+        let firsts = ["serious", "doubt", "note"].map(|word| listed.iter().position(|f| f["severity"] == word));
         assert!(
             order[0] < firsts[1].or(Some(usize::MAX)) && order[1] < firsts[2].or(Some(usize::MAX)),
-            "{part}: {told:?}"
+            "{part}: {listed:?}"
         );
-        for finding in told {
+        for finding in listed {
             let text = finding["text"].as_str().unwrap();
             assert!(said.contains(text), "{part}: {text}\n{said}");
             let escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
@@ -277,7 +277,7 @@ fn check_adds_nothing_to_a_plan_just_written() {
         for kind in found.iter().map(|f| f["kind"].as_str().unwrap()) {
             // Warnings of the plan say these.
             if !["overhang", "layers", "short-arc"].contains(&kind) {
-                let check = told.iter().find(|f| f["kind"] == kind).unwrap();
+                let check = listed.iter().find(|f| f["kind"] == kind).unwrap();
                 let own = found.iter().filter(|f| f["kind"] == kind).count();
                 assert_eq!(check["count"].as_u64().unwrap() as usize, own, "{part}: {kind}");
                 assert!(said.contains(&format!(": {kind}: ")), "{part}: {said}");
@@ -382,7 +382,7 @@ fn curves_are_inspected_and_welded_as_walls() {
 }
 
 #[test]
-fn reach_tells_margins_and_refuses_what_is_too_far() {
+fn reach_gives_margins_and_refuses_what_is_too_far() {
     let folder = folder_with("cross");
     ok(folder.path(), &["plan", "cross.stl", "-o", "out", "--no-deposit"]);
     let reach = ["reach", "out/plan.json", "--cell", "kuka-kr20-r1810"];
@@ -656,7 +656,7 @@ fn alone() -> (TempDir, PathBuf) {
 }
 
 #[test]
-fn a_studio_that_is_not_there_is_told() {
+fn a_missing_studio_is_reported() {
     let (folder, program) = alone();
     let output = Command::new(program).args(["studio", "propeller"]).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
@@ -684,20 +684,20 @@ fn a_studio_beside_the_command_is_started() {
 }
 
 #[test]
-fn a_large_plan_is_told_before_it_is_made() {
+fn a_large_plan_is_announced_before_it_is_made() {
     let folder = folder_with("cross");
-    let told = |more: &[&str]| {
+    let listed = |more: &[&str]| {
         let arguments = [&["plan", "cross.stl", "-s", "zigzag", "--no-deposit"], more].concat();
         let output = beadwright(folder.path(), &arguments);
         assert!(output.status.success(), "{more:?}");
         String::from_utf8(output.stderr).unwrap()
     };
-    let large = told(&["--set", "bead.width=0.2"]);
+    let large = listed(&["--set", "bead.width=0.2"]);
     for word in ["about 10 layers with 41 m of bead each, 0.4 km in all", "bead.width (0.2 mm)", "Ctrl-C"] {
         assert!(large.contains(word), "{large}");
     }
-    assert!(!told(&[]).contains("are to be planned"), "a usual plan needs no words");
-    assert!(!told(&["--set", "bead.width=0.2", "--quiet"]).contains("are to be planned"));
+    assert!(!listed(&[]).contains("are to be planned"), "a usual plan needs no words");
+    assert!(!listed(&["--set", "bead.width=0.2", "--quiet"]).contains("are to be planned"));
 }
 
 /// `check` reads a program as a welding programmer would; `plan` and `profile check` say what its templates would do.

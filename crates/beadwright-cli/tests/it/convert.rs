@@ -1,4 +1,4 @@
-//! STEP files go through a converter of others: what it makes is planned, and what it does not is told.
+//! STEP files go through a converter of others: what it makes is planned, and what it fails to make is reported.
 #![cfg(unix)]
 
 use std::fs;

@@ -40,16 +40,16 @@ fn a_scan_is_compared_with_the_part_as_it_is_planned() {
         assert!(text.contains(line), "{text}");
     }
     assert!(!text.contains("warning"), "{text}");
-    let told = figures(folder.path(), &placed);
-    assert!((told["figures"]["mean"].as_f64().unwrap() - 0.5).abs() < 1e-6, "{told}");
-    assert_eq!(told["doubts"].as_array().unwrap().len(), 0);
+    let reported = figures(folder.path(), &placed);
+    assert!((reported["figures"]["mean"].as_f64().unwrap() - 0.5).abs() < 1e-6, "{reported}");
+    assert_eq!(reported["doubts"].as_array().unwrap().len(), 0);
     // Beside the part, the first line says so.
     let text = said(folder.path(), &["cross.stl", "scan.csv"]);
     assert!(text.starts_with("warning: half of the scan lies more than") && text.contains("--shift"), "{text}");
 }
 
 #[test]
-fn a_wrong_unit_is_told_with_its_remedy() {
+fn a_wrong_unit_is_reported_with_its_remedy() {
     let folder = folder(0.0, 1.0 / 25.4);
     let text = said(folder.path(), &["cross.stl", "scan.csv"]);
     assert!(text.starts_with("warning: the scan has about 1/25.4 the size"), "{text}");

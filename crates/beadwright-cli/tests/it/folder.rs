@@ -32,7 +32,8 @@ fn is(folder: &Path, files: &[(&str, &str)]) {
 }
 
 #[test]
-fn case_1610_a_set_replaces_the_earlier_one_and_nothing_else() {
+fn a_set_replaces_the_earlier_one_and_nothing_else() {
+    // Case 1610.
     let place = tempfile::tempdir().unwrap();
     let out = place.path().join("deep/out");
     let first = r#"{"files": ["plan.json", "metrics.json", "A.src", "A_L001.src", "A_L002.src", "../x", "gone"]}"#;
@@ -62,7 +63,8 @@ fn case_1610_a_set_replaces_the_earlier_one_and_nothing_else() {
 }
 
 #[test]
-fn case_1611_the_current_folder_stays_the_one_that_a_shell_is_in() {
+fn the_current_folder_stays_the_one_that_a_shell_is_in() {
+    // Case 1611.
     let place = tempfile::tempdir().unwrap();
     let plan = |part: &str, layers: &str| {
         let model = place.path().join(format!("{part}.stl"));
@@ -88,7 +90,8 @@ fn case_1611_the_current_folder_stays_the_one_that_a_shell_is_in() {
 }
 
 #[test]
-fn case_1612_a_move_that_fails_changes_nothing() {
+fn a_move_that_fails_changes_nothing() {
+    // Case 1612.
     let place = tempfile::tempdir().unwrap();
     let out = place.path().join("out");
     put(&out, &[("plan.json", "1"), ("A.src", "a")]);
@@ -107,7 +110,8 @@ fn case_1612_a_move_that_fails_changes_nothing() {
 }
 
 #[test]
-fn case_1613_leftovers_of_dead_runs_are_cleared_and_live_runs_let_be() {
+fn leftovers_of_dead_runs_are_cleared_and_live_runs_let_be() {
+    // Case 1613.
     let place = tempfile::tempdir().unwrap();
     let out = place.path().join("out");
     // A dead run: its lock is free.
@@ -130,7 +134,8 @@ fn case_1613_leftovers_of_dead_runs_are_cleared_and_live_runs_let_be() {
 }
 
 #[test]
-fn case_1614_single_files_replace_no_device_and_no_link_and_have_the_usual_mode() {
+fn single_files_replace_no_device_and_no_link_and_have_the_usual_mode() {
+    // Case 1614.
     let place = tempfile::tempdir().unwrap();
     let (file, link) = (place.path().join("a.html"), place.path().join("link.html"));
     fs::write(place.path().join("usual"), "").unwrap();
@@ -150,7 +155,8 @@ fn case_1614_single_files_replace_no_device_and_no_link_and_have_the_usual_mode(
 
 /// No space left, and places where nothing can be written.
 #[test]
-fn case_1616_what_cannot_be_written_is_said_and_leaves_nothing() {
+fn what_cannot_be_written_is_said_and_leaves_nothing() {
+    // Case 1616.
     let place = tempfile::tempdir().unwrap();
     let model = place.path().join("part.stl");
     beadwright().args(["example", "cross", "-o"]).arg(&model).output().unwrap();
@@ -172,7 +178,8 @@ fn case_1616_what_cannot_be_written_is_said_and_leaves_nothing() {
 
 /// SIGTERM stops a run as Ctrl-C does: nothing is left behind.
 #[test]
-fn case_1617_a_run_that_is_told_to_end_leaves_nothing() {
+fn a_run_that_is_asked_to_end_leaves_nothing() {
+    // Case 1617.
     let place = tempfile::tempdir().unwrap();
     let model = place.path().join("part.stl");
     beadwright().args(["example", "propeller", "-o"]).arg(&model).output().unwrap();
@@ -203,7 +210,8 @@ fn report_is_staged(place: &Path) -> bool {
 
 /// `BEADWRIGHT_KILLS=200` tries more.
 #[test]
-fn case_1615_runs_killed_around_the_commit_leave_one_set_or_the_other() {
+fn runs_killed_around_the_commit_leave_one_set_or_the_other() {
+    // Case 1615.
     let kills: u32 = std::env::var("BEADWRIGHT_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(24);
     let place = tempfile::tempdir().unwrap();
     let model = place.path().join("part.stl");

@@ -14,7 +14,7 @@ fn json(text: &str) -> serde_json::Value {
 }
 
 #[test]
-fn the_heat_of_a_plan_is_told_and_drawn() {
+fn the_heat_of_a_plan_is_printed_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     said(&beadwright(at, &["example", "cross", "-o", "cross.stl"]));
@@ -57,8 +57,8 @@ fn programs_wait_for_the_limit() {
     let ahead = heat["layers"].as_array().unwrap().iter().flat_map(|l| l["passes"].as_array().unwrap().clone());
     let ahead = ahead.flat_map(|pass| pass["along"].as_array().unwrap().clone());
     let peak = ahead.map(|t| t.as_f64().unwrap()).fold(0.0, f64::max);
-    let told = ahead_of_it["largest"]["size"].as_f64().unwrap();
-    assert!(peak > hottest + 5.0 && (told - peak).abs() < 2.0, "{told} {peak}");
+    let reported = ahead_of_it["largest"]["size"].as_f64().unwrap();
+    assert!(peak > hottest + 5.0 && (reported - peak).abs() < 2.0, "{reported} {peak}");
     // The report knows how warm it is where each pass begins, and how long each layer waits.
     let report = |plan: &str| fs::read_to_string(at.join(plan).join("report.html")).unwrap();
     let warmth = |report: &str| -> Vec<serde_json::Value> {
@@ -68,10 +68,10 @@ fn programs_wait_for_the_limit() {
     let layers = warmth(&report("with"));
     let starts = layers.iter().flat_map(|layer| layer["starts"].as_array().unwrap()).map(|t| t.as_f64().unwrap());
     assert!(starts.clone().all(|celsius| celsius <= 151.0) && starts.fold(0.0, f64::max) > 140.0);
-    let told: f64 = layers.iter().map(|layer| layer["wait"].as_f64().unwrap()).sum();
-    assert!((told - waits).abs() < 0.01 * waits, "{told} s of {waits} s");
+    let reported: f64 = layers.iter().map(|layer| layer["wait"].as_f64().unwrap()).sum();
+    assert!((reported - waits).abs() < 0.01 * waits, "{reported} s of {waits} s");
     assert!(warmth(&report("without")).is_empty());
-    // The waits stand in the program.
+    // The waits are in the program.
     let programs = fs::read_dir(at.join("with")).unwrap().map(|entry| entry.unwrap().path());
     let text: String = programs
         .filter(|path| path.extension().is_some_and(|e| e == "script"))
@@ -81,13 +81,13 @@ fn programs_wait_for_the_limit() {
         text.lines().filter_map(|line| line.trim().strip_prefix("sleep(")?.strip_suffix(')')?.parse::<f64>().ok());
     let slept: f64 = sleeps.filter(|seconds| *seconds > 5.0).sum();
     assert!((slept - waits).abs() < 0.1 * waits, "{slept} s of {waits} s");
-    // Before a plan with limits, the plain one is told what it lacks.
+    // Before a plan with limits, the plain one says what it lacks.
     let text = said(&beadwright(at, &["heat", "without/plan.json", "--limit", "150"]));
     assert!(text.contains("waits for cooling"), "{text}");
 }
 
 #[test]
-fn what_a_profile_lacks_is_told() {
+fn what_a_profile_lacks_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     said(&beadwright(at, &["example", "cross", "-o", "cross.stl"]));
@@ -116,5 +116,5 @@ fn walls_are_fitted_from_a_table() {
     let height = all["walls"][1]["height"].as_f64().unwrap();
     assert!((height / 49.0 - 1.0).abs() < 0.03, "{height}");
     let one = beadwright(at, &["bead", "walls", "walls.csv", "-p", "cmt-steel-abb", "--fit", "60"]);
-    assert!(String::from_utf8_lossy(&one.stderr).contains("two walls"), "one wall tells nothing");
+    assert!(String::from_utf8_lossy(&one.stderr).contains("two walls"), "one wall is not enough");
 }

@@ -67,7 +67,7 @@ fn a_scan_becomes_the_programs_that_follow() {
 }
 
 #[test]
-fn scans_and_plans_that_do_not_fit_are_told() {
+fn scans_and_plans_that_do_not_fit_are_reported() {
     let folder = wall();
     let adapt = |scan: &str, layer: &str| {
         refused(folder.path(), &["adapt", "plan/plan.json", "--scan", scan, "--after-layer", layer], 1)

@@ -206,7 +206,7 @@ fn a_profile_names_the_folder_of_its_dialect() {
 }
 
 #[test]
-fn a_broken_template_is_told_with_its_line_and_nothing_is_written() {
+fn a_broken_template_is_reported_with_its_line_and_nothing_is_written() {
     let folder = shop();
     let all = ["plan", "cross.stl", "--post", "./gantry", "-o", "out", "--no-deposit"];
     let layer = folder.path().join("gantry/layer.txt");

@@ -43,8 +43,8 @@ fn a_part_that_hangs_over_is_planned_as_its_preform() {
     assert!(why.contains("--preform plans the part with") && why.contains("kg more to weld"), "{why}");
     assert!(folder.path().join("out/refused.html").exists());
     let planned = run(folder.path(), &["plan", "table.stl", "--preform", "-o", "out"]);
-    let told = String::from_utf8(planned.stderr).unwrap();
-    assert!(planned.status.success() && told.contains("kg are milled off"), "{told}");
+    let reported = String::from_utf8(planned.stderr).unwrap();
+    assert!(planned.status.success() && reported.contains("kg are milled off"), "{reported}");
     assert!(folder.path().join("out/TABLE.src").exists() && !folder.path().join("out/refused.html").exists());
 }
 
@@ -61,15 +61,15 @@ fn a_preform_is_written_with_the_part_in_it() {
     let faces: Vec<Vec<&str>> = faces.lines().map(|line| line.split(',').collect()).collect();
     // Six of the leg and six of the top, each the largest first.
     assert_eq!((faces.len(), faces[0].len(), faces[1][1]), (13, 11, "6400.000"));
-    let told: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let reported: serde_json::Value = serde_json::from_str(&text).unwrap();
     let stock = import(&fs::read(folder.path().join("stock.3mf")).unwrap(), &Task::new()).unwrap();
     let names: Vec<&str> = stock.objects.iter().map(|object| object.name.as_str()).collect();
     assert_eq!(names, ["preform", "part"]);
     assert_eq!(stock.mesh.bounds().0.z, 0.0);
     // Both together, as the file has both.
-    let kg = told["figures"]["part_kg"].as_f64().unwrap() + told["figures"]["preform_kg"].as_f64().unwrap();
+    let kg = reported["figures"]["part_kg"].as_f64().unwrap() + reported["figures"]["preform_kg"].as_f64().unwrap();
     let density = 2.82e-6;
-    assert!((stock.mesh.volume() * density / kg - 1.0).abs() < 1e-3, "{told} {}", stock.mesh.volume());
+    assert!((stock.mesh.volume() * density / kg - 1.0).abs() < 1e-3, "{reported} {}", stock.mesh.volume());
 
     let text = said(folder.path(), &["preform", "table.stl"]);
     for row in ["table_preform.stl", "preform", "block", "milled off", "sawn off 4.0 mm above it"] {
@@ -79,7 +79,7 @@ fn a_preform_is_written_with_the_part_in_it() {
     assert!(text.contains("--orient turns the part."), "{text}");
     let turned = said(folder.path(), &["preform", "table.stl", "--orient", "--json"]);
     let turned: serde_json::Value = serde_json::from_str(&turned).unwrap();
-    assert!(turned["figures"]["preform_kg"].as_f64() < told["figures"]["preform_kg"].as_f64());
+    assert!(turned["figures"]["preform_kg"].as_f64() < reported["figures"]["preform_kg"].as_f64());
 }
 
 #[test]

@@ -135,7 +135,7 @@ fn links_lead_nowhere_else() {
 }
 
 #[test]
-fn what_stands_in_the_way_is_told_with_its_remedy() {
+fn an_obstacle_is_reported_with_its_remedy() {
     let empty = TempDir::new().unwrap();
     let run = |arguments: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_beadwright"));

@@ -33,7 +33,7 @@ fn commands_make_a_chain_without_files() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let stl = ok(at, b"", &["example", "star", "-o", "-"]);
-    assert!(String::from_utf8_lossy(&stl.stderr).contains("-: "), "what is told goes elsewhere");
+    assert!(String::from_utf8_lossy(&stl.stderr).contains("-: "), "messages go to standard error");
     ok(at, b"", &["example", "star", "-o", "star.stl"]);
     assert_eq!(stl.stdout, fs::read(at.join("star.stl")).unwrap());
     // The same plan, but for its name.
@@ -79,8 +79,8 @@ fn standard_output_needs_a_format() {
     ] {
         let refused = run(at, b"", arguments);
         let text = String::from_utf8_lossy(&refused.stderr).into_owned();
-        let told = text.contains(words) || text.contains("-: ");
-        assert!(refused.status.code() == Some(1) && told && refused.stdout.is_empty(), "{arguments:?}: {text}");
+        let named = text.contains(words) || text.contains("-: ");
+        assert!(refused.status.code() == Some(1) && named && refused.stdout.is_empty(), "{arguments:?}: {text}");
     }
 }
 
@@ -96,12 +96,12 @@ fn quiet_says_warnings_only_and_verbose_times() {
     let plan = ["plan", "propeller.stl", "--no-deposit", "-o", "out", "--set", "bead.height=1.5"];
     let [usual, silent] = said(&plan);
     let [none, warnings] = said(&[&plan[..], &["--quiet"]].concat());
-    let told: Vec<&str> = usual
+    let named: Vec<&str> = usual
         .lines()
         .filter(|line| ["serious: ", "warning: ", "note: "].iter().any(|word| line.starts_with(word)))
         .collect();
-    assert!(!told.is_empty() && silent.is_empty() && none.is_empty(), "{usual}");
-    assert_eq!(warnings.lines().collect::<Vec<_>>(), told);
+    assert!(!named.is_empty() && silent.is_empty() && none.is_empty(), "{usual}");
+    assert_eq!(warnings.lines().collect::<Vec<_>>(), named);
     // What is asked for is still said.
     assert!(!said(&["plan", "propeller.stl", "--no-deposit", "-o", "out", "--json", "-q"])[0].is_empty());
     let [loud, times] = said(&[&plan[..], &["-v"]].concat());

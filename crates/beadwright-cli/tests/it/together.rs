@@ -72,7 +72,7 @@ fn four_parts_grow_together() {
         parts.sort_by(f64::total_cmp);
         assert_eq!(own.len(), parts.len(), "layer {}", index + 1);
         assert!(own.iter().zip(&parts).all(|(a, b)| (a - b).abs() < 0.01), "layer {}: {own:?} {parts:?}", index + 1);
-        // Travels run above everything that stands, since no pass lies higher than the present layer.
+        // Travels run above everything built so far, since no pass lies higher than the present layer.
         let top = layer["z"].as_f64().unwrap();
         let points = layer["passes"].as_array().unwrap().iter().flat_map(|pass| pass["points"].as_array().unwrap());
         assert!(points.into_iter().all(|p| p[2].as_f64().unwrap() == top));
@@ -128,7 +128,7 @@ fn four_parts_are_welded_one_after_another() {
     }
     let read = beadwright(at, &["inspect", &main_program(&at.join("all"))]);
     assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
-    // Nearer to each other the torch would hit them; together they may stand so.
+    // Built one after another this close, the torch would hit them; built together they may be this close.
     let near = ["-o", "near", "--gap", "5"];
     let refused = beadwright(at, &[&PLAN[..], &near, &["--order", "parts"]].concat());
     let text = String::from_utf8_lossy(&refused.stderr).into_owned();

@@ -202,20 +202,14 @@ def _source(
     def module(name: str) -> str | None:
         # If the same part is next to it in several languages, the program's own comes first.
         files = sorted(path.parent.iterdir(), key=lambda file: (file.suffix.lower() != suffix, file))
-        texts = ((file, _text(file)) for file in files if file.is_file() and _fits(name, file))
+        texts = ((file, _text(file)) for file in files if file.is_file() and _core.may_be_module(file.name, name))
         return _named(name, ((file, text) for file, text in texts if _core.language(text) in (None, language)))
 
     return path.name, text, module
 
 
 def _named(name: str, texts: Iterable[tuple[Path, str]]) -> str | None:
-    return next((text for file, text in texts if _fits(name, file)), None)
-
-
-def _fits(name: str, file: Path) -> bool:
-    """Whether a file is the module of that name, whatever its case and ending."""
-    wanted, found = name.lower(), file.name.lower()
-    return found == wanted or found in {f"{wanted}.{end}" for end in ("src", "mod", "sub", "ls", "jbi")}
+    return next((text for file, text in texts if _core.may_be_module(file.name, name)), None)
 
 
 def _text(path: Path) -> str:

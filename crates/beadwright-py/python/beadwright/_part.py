@@ -135,7 +135,7 @@ class Part:
         return part
 
     def preform(self, profile: Profile | StrPath = "cmt-al2319-kuka") -> Part:
-        """The solid with what is milled off again, by the section ``[preform]`` of a profile; it is planned like any part.
+        """The solid plus the stock that is milled off afterwards, by the section ``[preform]`` of a profile; it is planned like any part.
 
         Raises :class:`BeadwrightError` for a wall given by curves, and for a surface that is not closed.
         """
@@ -200,7 +200,7 @@ class Part:
 
     @property
     def key(self) -> str:
-        """Tells parts apart by their content: the same for the same bytes, placed alike."""
+        """A key of the part's content: the same for the same bytes placed alike."""
         return hashlib.sha256(repr(self._maker).encode()).hexdigest()
 
     def to_trimesh(self) -> Any:

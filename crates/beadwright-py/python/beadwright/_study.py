@@ -181,10 +181,10 @@ def _plain(value: Any) -> Any:
 def _jobs(
     parts: Sequence[Part], samples: Sequence[dict[str, Value]], base: Profile, measures: Mapping[str, Measure]
 ) -> Iterator[_Job]:
-    told = [f"{name}={each if isinstance(each, str) else _place(each)}" for name, each in measures.items()]
+    given = [f"{name}={each if isinstance(each, str) else _place(each)}" for name, each in measures.items()]
     settings = [json.dumps({key: _plain(value) for key, value in sample.items()}, sort_keys=True) for sample in samples]
     for part in parts:
-        common = [_core.VERSION, part.key, base.key, *told]
+        common = [_core.VERSION, part.key, base.key, *given]
         for sample, setting in zip(samples, settings, strict=True):
             yield _Job(part, sample, hashlib.sha256("\0".join([*common, setting]).encode()).hexdigest())
 

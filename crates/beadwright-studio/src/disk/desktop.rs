@@ -4,7 +4,7 @@ use beadwright::dialect::Chunk;
 use beadwright::files::{self, Folder, Post, write_file};
 use std::path::Path;
 
-/// Tells one content of a file from a later one.
+/// Distinguishes one content of a file from a later one.
 pub type Stamp = std::time::SystemTime;
 
 /// The bytes of a file.

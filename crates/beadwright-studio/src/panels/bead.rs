@@ -12,7 +12,7 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
         return;
     }
     if view.state.placing && view.state.mode == Mode::Solid {
-        ui.strong(place::told(known, view));
+        ui.strong(place::moved(known, view));
         return;
     }
     ui.horizontal(|ui| match figures(known, view) {

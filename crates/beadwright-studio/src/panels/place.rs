@@ -76,7 +76,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
         drag(known, view, queue, &response, &sight, &gizmo, handle);
         nudge(known, queue, ui, &response, &gizmo, handle);
         if response.dragged() {
-            figure(&painter, at, ui.visuals().strong_text_color(), told(known, view));
+            figure(&painter, at, ui.visuals().strong_text_color(), moved(known, view));
         }
     }
 }
@@ -187,7 +187,7 @@ fn draw(painter: &Painter, sight: &Sight<'_>, gizmo: &Gizmo, handle: Handle, col
 }
 
 /// How far the part has been dragged, or what the tool is for.
-pub(super) fn told(known: Known<'_>, view: &View<'_>) -> String {
+pub(super) fn moved(known: Known<'_>, view: &View<'_>) -> String {
     match view.state.grip {
         Some(Grip { handle: Handle::Turn, moved, .. }) => format!("{} {:+.1}°", known.t("turn-z"), moved.turn),
         Some(Grip { moved: Moved { shift, .. }, .. }) => {

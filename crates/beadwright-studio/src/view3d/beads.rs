@@ -387,9 +387,9 @@ fn merges(beads: &[Bead]) -> bool {
     let (start, way) = (first.from(), (last.to() - first.from()).normalize_or_zero());
     let near = |bead: &Bead| (bead.from() - start).cross(way).length() < ROUGH * first.width();
     let alike = |bead: &Bead| (bead.width() / first.width() - 1.0).abs() < 0.1 && bead.width < 0.0;
-    let stands = |bead: &Bead| bead.up == first.up || bead.up().dot(first.up()) > ROUGH_COS;
+    let upright = |bead: &Bead| bead.up == first.up || bead.up().dot(first.up()) > ROUGH_COS;
     let ahead = self::way(first).dot(way).min(self::way(last).dot(way)) > ROUGH_COS;
-    let fits = |bead: &Bead| near(bead) && alike(bead) && stands(bead);
+    let fits = |bead: &Bead| near(bead) && alike(bead) && upright(bead);
     way != Vec3::ZERO && ahead && between.iter().chain([last]).all(fits)
 }
 

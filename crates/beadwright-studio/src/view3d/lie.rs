@@ -6,7 +6,7 @@ use glam::{DVec3, Vec2, Vec3};
 /// Straight pieces keep this close to the line on their layer, mm, and the layer turns by no more than this along each, rad.
 const FINE: (f64, f64) = (0.05, 0.1);
 
-/// A place in space, and how the torch stands there.
+/// A place in space, and the torch's attitude there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stance {
     /// The wire's tip, mm.

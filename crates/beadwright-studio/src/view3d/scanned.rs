@@ -5,7 +5,7 @@ use glam::DVec3;
 
 /// Part of the points whose deviation the colours show; those beyond have the colour of the end, so that a little spatter
 /// does not take the colours away from the rest.
-const TOLD: f64 = 0.99;
+const SHARE: f64 = 0.99;
 
 /// The least deviation at an end of the colours, mm.
 const FINEST_MM: f64 = 0.01;
@@ -25,8 +25,8 @@ impl Scanned {
     /// None without points. `distances` are those of the points, mm.
     pub fn new(points: &[DVec3], triangles: &[[u32; 3]], distances: &[f64]) -> Option<Self> {
         let mut far: Vec<f64> = distances.iter().map(|distance| distance.abs()).collect();
-        let told = (TOLD * far.len().checked_sub(1)? as f64).round() as usize;
-        let range = far.select_nth_unstable_by(told, f64::total_cmp).1.max(FINEST_MM);
+        let index = (SHARE * far.len().checked_sub(1)? as f64).round() as usize;
+        let range = far.select_nth_unstable_by(index, f64::total_cmp).1.max(FINEST_MM);
         let coloured = |(at, distance): (&DVec3, &f64)| {
             let part = (0.5 + 0.5 * distance / range).clamp(0.0, 1.0);
             at.as_vec3().extend(part as f32).into()

@@ -1,4 +1,4 @@
-//! The arm in the 3-D view stands where the torch is.
+//! The arm in the 3-D view reaches to where the torch is.
 
 use beadwright::model::Model;
 use beadwright::profile::Profile;
@@ -42,12 +42,12 @@ fn the_wire_tip_of_every_arm_is_at_the_bead() {
                 }
             }
         }
-        assert!(stood > 20, "{name}: the arm stands at {stood} beads only");
+        assert!(stood > 20, "{name}: the arm is shown at {stood} beads only");
     }
 }
 
 #[test]
-fn nothing_stands_where_there_is_no_pass() {
+fn no_arm_is_shown_where_there_is_no_pass() {
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     let cell = Cell::built_in("kuka-kr20-r1810").unwrap();
     let reach = robot::reach(&cell, cell.part, &profile.track::<beadwright::layer::Layer>(&[]));

@@ -20,7 +20,7 @@ fn stl(triangles: &[[[f32; 3]; 3]]) -> Vec<u8> {
 }
 
 #[test]
-fn broken_files_are_told_and_the_program_lives_on() {
+fn broken_files_are_reported_and_the_program_lives_on() {
     let folder = tempfile::tempdir().unwrap();
     let triangle = |far: f32| [[0.0, 0.0, 0.0], [far, 0.0, 0.0], [0.0, far, 50.0]];
     let cut = { stl(&[triangle(100.0); 20])[..700].to_vec() };
@@ -49,15 +49,15 @@ fn broken_files_are_told_and_the_program_lives_on() {
         let known = harness.state().messages().len();
         harness.state_mut().open(&path);
         wait(&mut harness);
-        let told = match (harness.state().messages().get(known), &harness.state().plan().failure) {
+        let message = match (harness.state().messages().get(known), &harness.state().plan().failure) {
             (Some(message), _) => message.text.clone(),
             (None, Some(Failure::Sentence(text) | Failure::Units(text) | Failure::Height(text))) => text.clone(),
             (None, None) => panic!("{} is taken", path.display()),
         };
         let name = path.file_name().unwrap().to_string_lossy();
-        assert!(told.contains(&*name) && told.len() > name.len() + 20, "{name}: {told}");
-        assert!(told.ends_with('.'), "no sentence: {told}");
-        println!("{told}");
+        assert!(message.contains(&*name) && message.len() > name.len() + 20, "{name}: {message}");
+        assert!(message.ends_with('.'), "no sentence: {message}");
+        println!("{message}");
     }
     harness.state_mut().open_example("cross");
     wait(&mut harness);

@@ -6,7 +6,7 @@ use beadwright_studio::view3d::{Colour, palette};
 use sight::{SIGHTS, difference, lab};
 
 #[test]
-fn everybody_tells_kinds_and_marks_apart() {
+fn everybody_can_tell_kinds_and_marks_apart() {
     let kinds = palette::KINDS.map(palette::kind);
     for sight in &SIGHTS {
         for (i, a) in kinds.iter().enumerate() {
@@ -19,7 +19,7 @@ fn everybody_tells_kinds_and_marks_apart() {
 }
 
 #[test]
-fn everybody_tells_the_quarters_of_every_scale_apart() {
+fn everybody_can_tell_the_quarters_of_every_scale_apart() {
     let scales = [Colour::Order, Colour::Speed, Colour::Width, Colour::HeightError, Colour::Time, Colour::Temperature];
     for (scale, dark) in scales.into_iter().flat_map(|scale| [(scale, false), (scale, true)]) {
         let stops: Vec<palette::Rgb> = (0..=4).map(|i| palette::at(scale, f64::from(i) / 4.0, dark)).collect();

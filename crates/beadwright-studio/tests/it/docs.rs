@@ -16,7 +16,7 @@ fn text() -> String {
     std::fs::read_to_string(folder().join("studio.md")).unwrap()
 }
 
-/// What stands between two marks.
+/// The text between two marks.
 fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
     let rest = text.split_once(from).unwrap_or_else(|| panic!("{from} is missing")).1;
     rest.split_once(to).unwrap_or_else(|| panic!("{to} is missing")).0
@@ -62,7 +62,7 @@ fn the_project_file_is_read() {
     let project = Project::read(&file, Some(Path::new("/parts"))).unwrap();
     assert_eq!(project.source, Some(Source::File(PathBuf::from("/parts/bracket.stl"))));
     assert_eq!((project.height, project.profile.as_str()), (Some(50.0), profile));
-    // Everything is told: what is written has no key that the example lacks.
+    // Nothing is left out: what is written has no key that the example lacks.
     let keys = |text: &str| -> BTreeSet<String> {
         let table: toml::Table = toml::from_str(text).unwrap();
         let placement = table["placement"].as_table().unwrap().keys().map(|key| format!("placement.{key}"));

@@ -51,7 +51,7 @@ fn beads_lie_around_the_shaft_and_stand_out_from_it() {
             let (off_axis, up) = (at.with_z(0.0), bead_of.up().as_dvec3());
             assert!((25.0..61.001).contains(&off_axis.length()), "{at}");
             // Normals are those of the middles of segments, along which the layer turns by no more than 0.1.
-            assert!(up.dot(off_axis.normalize()) > 0.05_f64.cos() - 1e-4, "the bead at {at} stands along {up}");
+            assert!(up.dot(off_axis.normalize()) > 0.05_f64.cos() - 1e-4, "the bead at {at} points along {up}");
         }
     }
     let (low, high) = scene.bounds().unwrap();

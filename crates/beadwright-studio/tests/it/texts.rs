@@ -38,7 +38,7 @@ fn every_key_is_used_and_every_used_key_is_there() {
     }
     for part in code.split(".t(\"").skip(1).chain(code.split(".text(\"").skip(1)) {
         let key = part.split('"').next().unwrap();
-        assert!(Language::English.find(key).is_some(), "{key} stands in no table");
+        assert!(Language::English.find(key).is_some(), "{key} is in no table");
     }
     for entry in &beadwright_studio::actions::ENTRIES {
         assert!(Language::English.find(entry.text).is_some(), "{}", entry.text);
@@ -62,7 +62,7 @@ fn every_basic_parameter_is_one_of_the_profile_and_says_why() {
     for key in beadwright_studio::form::BASIC {
         assert!(beadwright_studio::form::field(key).is_some(), "{key} is no key of a profile");
         for text in [format!("basic {key}"), format!("why {key}")] {
-            assert!(Language::Chinese.find(&text).is_some(), "{text} stands in no table");
+            assert!(Language::Chinese.find(&text).is_some(), "{text} is in no table");
         }
     }
 }

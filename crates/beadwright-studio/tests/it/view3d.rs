@@ -237,7 +237,7 @@ fn colours_of_a_map_are_all_different_and_grow_brighter() {
 }
 
 #[test]
-fn beads_tell_how_warm_the_metal_was_where_a_limit_holds() {
+fn beads_know_how_warm_the_metal_was_where_a_limit_holds() {
     let mut limited = profile();
     let limits =
         beadwright::heat::Interpass { max_temperature: 120.0, min_temperature: None, reorder: true, along: false };
@@ -247,8 +247,8 @@ fn beads_tell_how_warm_the_metal_was_where_a_limit_holds() {
     let (low, high) = scene.value_range(Colour::Temperature).unwrap();
     assert!((19.0..25.0).contains(&low) && (60.0..121.5).contains(&high), "{low} to {high} °C");
     for (layer, beads) in plan.layers.iter().zip(scene.layers().iter().flatten()) {
-        let told: Vec<f32> = beads.passes().iter().filter_map(|pass| pass.temperature).collect();
-        assert_eq!(told, layer.temperatures.iter().map(|t| t.start as f32).collect::<Vec<_>>());
+        let temperatures: Vec<f32> = beads.passes().iter().filter_map(|pass| pass.temperature).collect();
+        assert_eq!(temperatures, layer.temperatures.iter().map(|t| t.start as f32).collect::<Vec<_>>());
     }
 }
 

@@ -29,7 +29,7 @@ pub struct Rules {
 
 /// The next layer.
 #[derive(Debug, Clone)]
-pub struct Next {
+pub(crate) struct Next {
     /// What it should add, the same everywhere: the planned passes with the metal of its thickness.
     pub promised: Layer,
     /// What is welded.
@@ -43,7 +43,7 @@ pub struct Next {
 }
 
 /// The next layer on a surface whose level is its mean height; `None` where the part is complete. Its index is `index`.
-pub fn next(
+pub(crate) fn next(
     planned: &[Layer],
     levels: &Levels,
     surface: &Surface,

@@ -12,7 +12,7 @@ const PIXELS: usize = 400;
 
 /// Heights of a grid as a picture: 0 in the middle of the scale, ±`most` (mm) at its ends; nothing where there is none.
 /// Of a large grid only some points are shown.
-pub fn relief(surface: &Surface, most: f64, height: impl Fn(usize) -> Option<f64>) -> Picture {
+pub(crate) fn relief(surface: &Surface, most: f64, height: impl Fn(usize) -> Option<f64>) -> Picture {
     let grid = surface.grid();
     let steps = f64::from(u8::MAX - FIRST_HEIGHT);
     let value = |height: f64| FIRST_HEIGHT + ((height / most + 1.0) / 2.0 * steps).round().clamp(0.0, steps) as u8;
@@ -30,12 +30,12 @@ pub fn relief(surface: &Surface, most: f64, height: impl Fn(usize) -> Option<f64
 }
 
 /// The ends of a scale of heights, in words.
-pub fn key(most: f64) -> [String; 2] {
+pub(crate) fn key(most: f64) -> [String; 2] {
     ["below", "above"].map(|word| format!("{} mm {word}", fixed(most, 2)))
 }
 
 /// Heights as cells of a table: mean, root mean square, lowest, highest.
-pub fn cells(spread: &Spread) -> Row {
+pub(crate) fn cells(spread: &Spread) -> Row {
     [spread.mean, spread.rms, spread.low, spread.high].map(|height| (format!("{height:+.2}"), false)).into()
 }
 

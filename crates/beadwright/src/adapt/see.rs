@@ -15,20 +15,20 @@ use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
 /// Fewer points over a layer say nothing.
-pub const FEWEST: usize = 3;
+const FEWEST: usize = 3;
 /// A build is not farther from its plan than this part of its height, …
-pub const FARTHEST: f64 = 0.35;
+const FARTHEST: f64 = 0.35;
 /// … or than this many layers, where that is more.
-pub const FARTHEST_LAYERS: f64 = 2.0;
+const FARTHEST_LAYERS: f64 = 2.0;
 /// A build whose heights deviate by more layers than this from their mean is another build.
-pub const UNEVEN: f64 = 2.0;
+const UNEVEN: f64 = 2.0;
 /// Of the points above half the height, at most this part may lie outside the part by more than a bead width.
-pub const BESIDE: f64 = 0.2;
+const BESIDE: f64 = 0.2;
 
 /// Where the shape of a layer is predicted to be this part of its thickness above or below its top, nothing is compared.
 const DOUBTFUL: f64 = 0.3;
 
-/// Cells that stand in where nothing was measured.
+/// Cells that fill in where nothing was measured.
 const STAND_IN: usize = 8;
 
 /// A scan compared with its plan.

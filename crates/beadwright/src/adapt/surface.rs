@@ -134,20 +134,20 @@ impl Surface {
     }
 
     /// Changes every height of the uppermost layer, mm.
-    pub fn disturb(&mut self, mut change: impl FnMut() -> f64) {
+    pub(crate) fn disturb(&mut self, mut change: impl FnMut() -> f64) {
         for (error, last) in self.error.iter_mut().zip(&self.last) {
             *error += if *last == self.layers { change() } else { 0.0 };
         }
     }
 
     /// From here on the build should be `by` (mm) higher than it should have been so far.
-    pub fn settle(&mut self, by: f64) {
+    pub(crate) fn settle(&mut self, by: f64) {
         self.level += by;
         self.error.iter_mut().for_each(|error| *error -= by);
     }
 
     /// Mean error within `radius` (mm) of a place, mm; `None` where the uppermost layer laid no metal.
-    pub fn mean_around(&self, place: DVec2, radius: f64) -> Option<f64> {
+    pub(crate) fn mean_around(&self, place: DVec2, radius: f64) -> Option<f64> {
         let (mut sum, mut count) = (0.0, 0.0_f64);
         let rows =
             ((place.y - radius) / self.grid.step).ceil() as i64..=((place.y + radius) / self.grid.step).floor() as i64;

@@ -27,14 +27,14 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     }
     let (mut programmer, mut at, mut findings) = (subject.profile.programmer().unfitted().unplaced(), None, Vec::new());
     for layer in subject.layers.iter().copied().filter(|layer| sound(layer)) {
-        let (mut pass, mut told) = (0, false);
+        let (mut pass, mut reported) = (0, false);
         for instruction in programmer.layer(layer).instructions {
             match instruction {
                 Instruction::Approach { to } | Instruction::Travel { to } | Instruction::Retract { to } => {
                     let lowest = at.and_then(|from| standing.lowest_gap(from, to));
-                    if let Some((gap, place)) = lowest.filter(|(gap, _)| !told && *gap < TOO_CLOSE * clearance) {
+                    if let Some((gap, place)) = lowest.filter(|(gap, _)| !reported && *gap < TOO_CLOSE * clearance) {
                         findings.push(CHECK.of_pass(layer, pass, Some(place), sentence(gap)));
-                        told = true;
+                        reported = true;
                     }
                     at = Some(to);
                 }

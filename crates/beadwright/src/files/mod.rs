@@ -162,7 +162,7 @@ pub struct Selection {
 
 impl Selection {
     /// Whether it is all of a plan.
-    pub fn is_all(&self) -> bool {
+    fn is_all(&self) -> bool {
         *self == Self::default()
     }
 

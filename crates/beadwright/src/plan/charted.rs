@@ -20,7 +20,7 @@ pub(super) const TOLERANCE: f64 = 0.02;
 ///
 /// # Errors
 /// [`WarpError`].
-pub fn unrolled<'a>(mesh: &'a Mesh, profile: &Profile, task: &Task) -> Result<Cow<'a, Mesh>, WarpError> {
+pub(crate) fn unrolled<'a>(mesh: &'a Mesh, profile: &Profile, task: &Task) -> Result<Cow<'a, Mesh>, WarpError> {
     let chart = &profile.layers.chart;
     Ok(if chart.is_level() { Cow::Borrowed(mesh) } else { Cow::Owned(warp::warped(chart, mesh, TOLERANCE, task)?) })
 }

@@ -101,8 +101,8 @@ impl Filled {
     /// The same passes on another slice of the same shape.
     fn shared_with(&mut self, slice: &Slice) -> Self {
         self.shared = true;
-        let told = self.slice.warnings.iter().skip(self.known).map(|w| Warning { layer: slice.index, ..*w });
-        let warnings = slice.warnings.iter().copied().chain(told).collect();
+        let of_fill = self.slice.warnings.iter().skip(self.known).map(|w| Warning { layer: slice.index, ..*w });
+        let warnings = slice.warnings.iter().copied().chain(of_fill).collect();
         Self { slice: Slice { warnings, ..slice.clone() }, known: slice.warnings.len(), ..self.clone() }
     }
 }

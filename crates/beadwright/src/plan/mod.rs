@@ -11,7 +11,7 @@
 //! | [`clearance`] | whether the torch has room next to finished parts |
 //! | `parts` | parts that are welded one after another |
 //! | `centre_lines` | walls of one bead by their centre-lines |
-//! | [`charted`] | parts whose layers are not level |
+//! | `charted` | parts whose layers are not level |
 //! | `candidates` | what fills an island that its strategy cannot |
 //! | [`choice`] | which strategy a part is planned with |
 //! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
@@ -37,7 +37,7 @@ mod beside;
 mod bodies;
 mod candidates;
 mod centre_lines;
-pub mod charted;
+pub(crate) mod charted;
 pub mod choice;
 pub mod clearance;
 mod cover;
@@ -58,7 +58,7 @@ mod row;
 mod scan_lines;
 pub mod stock;
 mod support;
-pub mod warm;
+pub(crate) mod warm;
 mod wedges;
 
 pub use expected::{Expected, expected};

@@ -34,13 +34,13 @@ pub(super) fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<S
 
 /// Why a solid gives no passes: what was dropped on the way, or its width.
 pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> String {
-    let told = |kind| summary.warnings.summaries().find(|w| w.kind == kind).map(WarningSummary::sentence);
+    let warned = |kind| summary.warnings.summaries().find(|w| w.kind == kind).map(WarningSummary::sentence);
     let size = mesh.size();
     let part = format!("the part is {:.1} × {:.1} × {:.1} mm", size.x, size.y, size.z);
     if summary.metrics.slice_area_mm2 == 0.0 {
-        return match told(WarningKind::OpenContourDropped) {
+        return match warned(WarningKind::OpenContourDropped) {
             Some(open) => format!("the surface of the model is not closed. {open}"),
-            None => told(WarningKind::Sliver).or(told(WarningKind::ContoursUnited)).map_or_else(
+            None => warned(WarningKind::Sliver).or(warned(WarningKind::ContoursUnited)).map_or_else(
                 || format!("the slices are empty ({part}). Opposite surfaces cancel: check that the model is solid."),
                 |lost| format!("the slices are empty. {lost}"),
             ),
@@ -48,7 +48,7 @@ pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> St
     }
     let width = profile.bead.width;
     let remedy = "Use a narrower bead or a larger part, or check the unit of the file.";
-    match told(WarningKind::PassTooShort) {
+    match warned(WarningKind::PassTooShort) {
         Some(short) => {
             format!(
                 "what is wide enough for a bead of {width} mm gives passes too short to weld ({part}). {short} {remedy}"

@@ -12,7 +12,7 @@ use crate::task::{Cancelled, Task};
 use crate::warning::WarningKind;
 use std::convert::Infallible;
 
-/// A part with what is milled off again.
+/// A part plus the stock that is milled off afterwards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stocked {
     /// The preform, to be planned; it holds the part that is milled from it ([`Import::milled`]).

@@ -25,7 +25,7 @@ const STUB: f64 = 2.0;
 /// Places per bead width at which a pass is looked at.
 const SAMPLES: f64 = 4.0;
 /// An island rests on another if they share this part of the smaller one's area or more.
-const STANDS: f64 = 0.05;
+const RESTS: f64 = 0.05;
 
 /// What lies below the next layer.
 #[derive(Default)]
@@ -174,7 +174,7 @@ impl Support {
 
 fn stands_on(island: &Polygon, lower: &Polygon) -> bool {
     let common = Region::from(island.clone()).intersection(&Region::from(lower.clone())).area();
-    common > STANDS * island.area().min(lower.area())
+    common > RESTS * island.area().min(lower.area())
 }
 
 /// What lies below a place.

@@ -102,7 +102,7 @@ pub(super) fn widen(layer: &mut Layer, heat: &LayerHeat, build: &Build, law: &Be
 }
 
 /// A value for every piece of a pass, by the temperature ahead of the torch on it (°C).
-pub fn along(pass: &Pass, heat: &PassHeat, build: &Build, value: impl Fn(&Segment, f64) -> f64) -> Along {
+pub(crate) fn along(pass: &Pass, heat: &PassHeat, build: &Build, value: impl Fn(&Segment, f64) -> f64) -> Along {
     let mut way = 0.0;
     let mut of = |piece: Segment| {
         let from = way;

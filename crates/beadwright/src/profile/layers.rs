@@ -91,7 +91,7 @@ impl LayersSection {
     }
 
     /// How the layers of a layer's body lie in space.
-    pub fn chart_of(&self, layer: &Layer) -> &Chart {
+    pub(crate) fn chart_of(&self, layer: &Layer) -> &Chart {
         self.bodies.get(layer.body).map_or(&self.chart, |body| &body.chart)
     }
 

@@ -406,7 +406,7 @@ impl Profile {
     }
 
     /// A pass that takes less time than this, s, ends before its arc is steady: 0 where the torch waits until then.
-    pub fn soonest_arc_end(&self) -> f64 {
+    pub(crate) fn soonest_arc_end(&self) -> f64 {
         let stands = |post: &String| self.dialects.get(post).is_some_and(|section| section.stands_at_start());
         let stands = !self.posts.is_empty() && self.posts.iter().all(stands);
         if stands { 0.0 } else { self.steady_after() }

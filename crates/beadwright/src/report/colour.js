@@ -38,11 +38,11 @@ const warmth = data.warmth.flatMap(({ starts }) => starts).reduce(([low, high], 
 // `field` is the number of the value in the shader of scene.js; `flows` says that it changes within a piece.
 const CHOICES = {
   kind: { field: 0 },
-  order: { field: 1, flows: true, ramp: RAMP, range: [0, 1], of: (pass, i, t, layer) => t / (layer.seconds || 1), tell: part => part ? "last" : "first" },
-  width: { field: 2, ramp: RAMP, range: data.ranges.width, of: (pass, i) => after(pass, i)[0], tell: mm => `${mm.toFixed(2)} mm` },
-  speed: { field: 3, ramp: RAMP, range: data.ranges.speed, of: (pass, i) => after(pass, i)[1], tell: v => `${v.toFixed(1)} mm/s` },
-  time: { field: 4, flows: true, ramp: RAMP, range: [0, total], of: (pass, i, t, layer) => whenOf(layer, t), tell: clock },
-  warm: { field: 5, ramp: EMBER, range: warmth, of: pass => pass.celsius, tell: celsius => `${celsius} °C` },
+  order: { field: 1, flows: true, ramp: RAMP, range: [0, 1], of: (pass, i, t, layer) => t / (layer.seconds || 1), text: part => part ? "last" : "first" },
+  width: { field: 2, ramp: RAMP, range: data.ranges.width, of: (pass, i) => after(pass, i)[0], text: mm => `${mm.toFixed(2)} mm` },
+  speed: { field: 3, ramp: RAMP, range: data.ranges.speed, of: (pass, i) => after(pass, i)[1], text: v => `${v.toFixed(1)} mm/s` },
+  time: { field: 4, flows: true, ramp: RAMP, range: [0, total], of: (pass, i, t, layer) => whenOf(layer, t), text: clock },
+  warm: { field: 5, ramp: EMBER, range: warmth, of: pass => pass.celsius, text: celsius => `${celsius} °C` },
   heat: { field: 0 },
 };
 
@@ -56,11 +56,11 @@ function colourOf(pass, i, t, layer) {
 }
 
 function showKey() {
-  const { ramp, range, tell } = CHOICES[shown.by];
+  const { ramp, range, text } = CHOICES[shown.by];
   $("key-kind").hidden = Boolean(ramp) || shown.by === "heat";
   $("key-heat").hidden = shown.by !== "heat";
   $("key-ramp").hidden = !ramp;
   if (!ramp) return;
-  [$("ramp-low").textContent, $("ramp-high").textContent] = range.map(tell);
+  [$("ramp-low").textContent, $("ramp-high").textContent] = range.map(text);
   drawKey($("ramp"), part => rampAt(part, ramp));
 }

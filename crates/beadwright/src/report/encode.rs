@@ -171,8 +171,8 @@ fn deflate(head: Vec<u8>, body: &[u8]) -> Vec<u8> {
 
 fn warnings(warnings: &[Warning]) -> serde_json::Value {
     let round = |v: f64| (v * 100.0).round() / 100.0;
-    let told = warnings.iter().take(MOST_WARNINGS);
-    told.map(|w| serde_json::json!([round(w.place.x), round(w.place.y), short(w)])).collect()
+    let first = warnings.iter().take(MOST_WARNINGS);
+    first.map(|w| serde_json::json!([round(w.place.x), round(w.place.y), short(w)])).collect()
 }
 
 /// A warning in a few words, without its place.

@@ -1,4 +1,4 @@
-// The height field of a layer as an image: encode.rs tells the format.
+// The height field of a layer as an image: encode.rs describes the format.
 
 const EMPTY = 0, VOID = 1, FIRST_HEIGHT = 2, FULL_SCALE = 2;
 const VOID_COLOUR = [232, 0, 150];

@@ -1,4 +1,4 @@
-// Reading layers: encode.rs tells the format. A layer is inflated when it is shown.
+// Reading layers: encode.rs describes the format. A layer is inflated when it is shown.
 
 const HEAD = 18, HEAD_CHARACTERS = 192;
 

@@ -1,4 +1,4 @@
-// The layers of the page: what stands in it as JSON, when each layer is welded, and the layers read last.
+// The layers of the page: the JSON that it contains, when each layer is welded, and the layers read last.
 
 const KEPT = 48;
 const $ = id => document.getElementById(id);

@@ -1,4 +1,4 @@
-// How layers lie in space: lie.rs tells what is known of each. Level layers have none.
+// How layers lie in space: lie.rs describes what is known of each. Level layers have none.
 
 // A place of a layer, `up` mm above its middle, and the normal there, as long as the layer is thick of its usual thickness.
 function placed(lie, u, v, up) {
@@ -43,7 +43,7 @@ function divisions(lie, from, to) {
   }
   if (!lie?.around) return [1];
   const [a, b] = [from, to].map(([u, v]) => placed(lie, u, v, 0).normal), { radius, half } = lie.around;
-  // More than half a turn is longer than normals tell.
+  // Normals cannot show more than half a turn.
   const turn = Math.max(Math.acos(Math.min(dot3(a, b), 1)), half === undefined ? Math.abs(to[0] - from[0]) / radius : 0);
   const count = Math.max(Math.ceil(turn / 0.1), 1);
   return Array.from({ length: count }, (_, k) => (k + 1) / count);

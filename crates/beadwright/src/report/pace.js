@@ -22,7 +22,7 @@ function timed(pace, gl, triangles, begun, redraw) {
     if (gl.clientWaitSync(fence, gl.SYNC_FLUSH_COMMANDS_BIT, 0) === gl.TIMEOUT_EXPIRED) return setTimeout(look, 3);
     gl.deleteSync(fence);
     pace.drawing = false;
-    // Few triangles tell nothing of their rate.
+    // Too few triangles give no rate.
     if (triangles > 20000) pace.rate = (performance.now() - begun) / triangles;
     if (pace.again) redraw();
   };

@@ -96,7 +96,7 @@ function resize() {
   for (const canvas of [picture, solid]) resizeCanvas(canvas, width, height);
   resizeCanvas(bars, bars.clientWidth, 54);
   resizeCanvas(timeline, timeline.clientWidth, 54);
-  // The thumb stands below its bar: its way is shorter than the track by one thumb.
+  // The thumb sits below its bar: it travels the length of the track less one thumb.
   const inset = bars.clientWidth / heads.length / 2 - 8;
   slider.style.marginInline = `${inset}px`;
   if (view.fitted) fit();

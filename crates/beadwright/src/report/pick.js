@@ -1,4 +1,4 @@
-// A pass that is pointed out: which one lies below the pointer, and what there is to tell of it.
+// A pass that is pointed out: which one lies below the pointer, and what there is to say about it.
 
 // The pass of the layer shown at a place, mm, and the time there; null beside all beads.
 function pickLayer(x, y) {

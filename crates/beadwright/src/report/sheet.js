@@ -21,10 +21,10 @@ function slide(parent, labels, first, name, changed) {
   const row = make("div", parent, { className: "slide" });
   const slider = make("input", row, { type: "range", min: 0, max: labels.length - 1, value: first });
   const label = make("span", row);
-  const tell = () => slider.setAttribute("aria-valuetext", label.textContent = labels[slider.value]);
+  const announce = () => slider.setAttribute("aria-valuetext", label.textContent = labels[slider.value]);
   slider.setAttribute("aria-label", name);
-  slider.oninput = () => { tell(); changed(Number(slider.value)); };
-  tell();
+  slider.oninput = () => { announce(); changed(Number(slider.value)); };
+  announce();
 }
 
 // What is wider than the window says so.

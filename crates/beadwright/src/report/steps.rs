@@ -27,7 +27,7 @@ fn begun(islands: &[Polygon], titles: [&'static str; 4]) -> ([Sketch; 4], f64) {
 
 /// Contours with their pockets (violet: those that are kept), skeleton regions, the contours left (orange: those that
 /// were cut), and the passes.
-pub fn sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
+pub(crate) fn sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
     let titles = ["1. Contours and their pockets", "2. Skeleton regions", "3. Contours, cut", "4. Passes"];
     let (mut sketches, thin) = begun(islands, titles);
     for island in islands {
@@ -63,7 +63,7 @@ fn draw(steps: &Steps, sketches: &mut [Sketch; 4], thin: f64) {
 
 /// Rings and single-bead walls, rings joined (with the places of their flips), the relaxed lines, and the passes at
 /// their true width.
-pub fn loop_sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
+pub(crate) fn loop_sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
     let titles = ["1. Rings, and walls for one bead", "2. Rings joined by flips", "3. Relaxed", "4. Passes"];
     let (mut sketches, thin) = begun(islands, titles);
     for (steps, middle) in islands.iter().flat_map(|island| one_loop::steps(island, settings)) {

@@ -30,14 +30,14 @@ function drawTimeline() {
 function startTimeline() {
   const sums = data.times.map(partsOf).reduce((sum, parts) => PARTS.map(([name], i) => sum[i] + parts[name]), [0, 0, 0]);
   const words = PARTS.map(([, word], i) => `${word} ${clock(sums[i])} (${(100 * sums[i] / total).toFixed(1)} %)`);
-  const told = [0, 1, 2].filter(i => sums[i] > 0);
-  $("times").replaceChildren(...told.map(i => {
+  const present = [0, 1, 2].filter(i => sums[i] > 0);
+  $("times").replaceChildren(...present.map(i => {
     const item = element("span", words[i]), swatch = document.createElement("i");
     swatch.className = `swatch ${PARTS[i][0]}`;
     item.prepend(swatch);
     return item;
   }));
-  timeline.setAttribute("aria-label", `Time line of ${clock(total)}: ${told.map(i => words[i]).join(", ")}`);
+  timeline.setAttribute("aria-label", `Time line of ${clock(total)}: ${present.map(i => words[i]).join(", ")}`);
   const at = event => {
     const time = event.offsetX / timeline.clientWidth * total, index = heads.findIndex(({ begins, lasts }) => begins + lasts > time);
     return index < 0 ? heads.length - 1 : index;

@@ -63,7 +63,7 @@ fn faults(html: &str) -> Vec<String> {
     for (i, tag) in tags.iter().enumerate() {
         let pointed = |id: &str| tags.iter().any(|label| label.name == "label" && label.value("for") == Some(id));
         match tag.name {
-            "html" => ask(tag.value("lang") == Some("en"), tag, "tells its language"),
+            "html" => ask(tag.value("lang") == Some("en"), tag, "states its language"),
             "input" | "select" => {
                 ask(tag.labelled || tag.named() || tag.value("id").is_some_and(pointed), tag, "has a label");
             }

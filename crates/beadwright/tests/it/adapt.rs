@@ -1,4 +1,4 @@
-//! Scans and what follows from them: all formats tell the same, known errors come back as the metal that closed forms say,
+//! Scans and what follows from them: all formats give the same, known errors come back as the metal that closed forms say,
 //! and what cannot be of the plan is refused.
 
 use crate::common;
@@ -58,7 +58,7 @@ fn followed(layers: &[Layer], profile: &Profile, number: usize, seen: &Seen) -> 
 }
 
 #[test]
-fn all_formats_tell_the_same() {
+fn all_formats_give_the_same() {
     let points: Vec<DVec3> =
         (0..12).map(|i| DVec3::new((i % 4) as f64 * 0.5 - 1.0, (i / 4) as f64 * 0.5, 2.0 + i as f64 / 8.0)).collect();
     let lines = |separator: &str| {
@@ -103,14 +103,14 @@ fn all_formats_tell_the_same() {
 }
 
 #[test]
-fn what_was_not_seen_is_left_out_and_told() {
+fn what_was_not_seen_is_left_out_and_reported() {
     let scan = read(b"height_map x0=0 y0=0 step=1\n1,,3\nnan,5,-\n", &Task::new()).unwrap();
     assert_eq!((scan.points.len(), scan.without_height), (3, 3));
     assert_eq!(scan.points[1], DVec3::new(2.0, 0.0, 3.0));
 }
 
 #[test]
-fn broken_scans_are_told_with_their_line() {
+fn broken_scans_are_reported_with_their_line() {
     for (text, said) in [
         ("x,y,z\n1,2,3\n1,2,oops\n", "line 3 of the scan cannot be read: \"oops\" is not a number for z in mm."),
         ("1,2\n", "line 1 of the scan cannot be read: z is missing."),

@@ -22,7 +22,7 @@ enum Step {
     Set(&'static str, bool),
     /// s
     Wait(f64),
-    /// Waits until the arc burns, no longer than so many seconds; whether that was too long is kept in a variable.
+    /// Waits until the arc burns, for that many seconds at most; whether that was too long is kept in a variable.
     WaitForArc(f64, String),
     /// A variable takes the value of an expression.
     Let(String, String),
@@ -85,7 +85,7 @@ struct Language {
 /// Whether two values compare as a sign says.
 type Compares = fn(f64, f64) -> bool;
 
-/// What was switched when, in order, and where the program stood.
+/// What was switched when, in order, and where the program was.
 #[derive(Debug, Clone, PartialEq)]
 enum Event {
     Set(f64, &'static str, bool),
@@ -238,7 +238,7 @@ impl<'a> Controller<'a> {
     }
 }
 
-/// What stands before and behind a word that is not in brackets.
+/// The text before and after a word that is not in brackets.
 fn outside<'a>(text: &'a str, word: &str) -> Option<(&'a str, &'a str)> {
     let depth = |at: usize| text[..at].matches('(').count() - text[..at].matches(')').count();
     let (at, _) = text.match_indices(word).find(|(at, _)| depth(*at) == 0)?;
@@ -410,7 +410,7 @@ fn routines(language: &Language, files: &Files) -> BTreeMap<String, Vec<String>>
     for text in files.values() {
         let mut lines = text.lines().map(str::trim).peekable();
         while let Some(line) = lines.next() {
-            // The program itself stands around the routines of URScript.
+            // The program itself surrounds the routines of URScript.
             if line == "def demo():" {
                 continue;
             }
@@ -553,7 +553,7 @@ fn lost(language: &Language, files: &Files, routine: &str) -> String {
         return first;
     }
     assert!(controller.burning());
-    format!("the robot stands; {first}; {}", struck_again(after_halt(&controller.events)))
+    format!("the robot stops; {first}; {}", struck_again(after_halt(&controller.events)))
 }
 
 /// A row of the table: the dialect, then what happens where the arc does not start, goes out, the program is stopped, and the
@@ -591,7 +591,7 @@ fn krl() -> Row {
     assert!(key.burning());
     stops_while_it_is_struck(&KRL, &files, &["LIN", "CIRC", "$VEL"]);
     let stop = "arc and gas off: by an interrupt on `$STOPMESS`, and by `SPS.SUB` for the STOP key".to_owned();
-    let on = format!("the robot stands, the program halts; {}", struck_again(after_halt(&key.events)));
+    let on = format!("the robot stops, the program halts; {}", struck_again(after_halt(&key.events)));
     ("KRL, outputs", [never, lost, stop, on])
 }
 

@@ -1,4 +1,4 @@
-//! Data goes down the table of the design only: a module uses none that stands below it, and no two use each other.
+//! Data goes down the table of the design only: a module uses none that is below it, and no two use each other.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -79,7 +79,7 @@ fn no_arrow_runs_up() {
         let used = used_modules(name);
         let known: BTreeSet<&str> = rank.keys().copied().collect();
         let found = used.keys().map(String::as_str).collect::<BTreeSet<_>>();
-        assert_eq!(found, known, "every module of {name} stands in one row");
+        assert_eq!(found, known, "every module of {name} is in one row");
         for (module, others) in &used {
             for other in others {
                 assert!(rank[other.as_str()] < rank[module.as_str()], "{name}: {module} uses {other}");

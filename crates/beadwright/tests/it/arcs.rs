@@ -99,7 +99,7 @@ fn compare(case: &str, plan: &Plan, settings: &ProgramSettings) -> (usize, usize
     (welds(&full), welds(&fitted))
 }
 
-/// Time with the arc on: tells whether every speed has kept its place.
+/// Time with the arc on: shows whether every speed has kept its place.
 fn seconds(instructions: &[Instruction]) -> f64 {
     let (mut at, mut sum) = (DVec3::ZERO, 0.0);
     for instruction in instructions {

@@ -90,7 +90,7 @@ fn walls_are_planned_as_high_and_as_wide_as_they_grow() {
                 100.0 * errors.1
             );
             assert!(errors.0.abs() <= 0.03 && errors.1.abs() <= 0.08, "{degrees}°, {dwell} s: {errors:?}");
-            // The wire and the speed are those of every wall: the program tells the robot nothing else.
+            // The wire and the speed are those of every wall: the program gives the robot nothing else.
             for piece in layers[1..].iter().flat_map(|l| &l.passes).flat_map(Pass::segments) {
                 assert!((piece.pace / 10.0 - 1.0).abs() < 0.02, "{}", piece.pace);
             }

@@ -196,7 +196,7 @@ fn a_calibrated_arm_is_exact_too() {
 }
 
 #[test]
-fn beyond_its_reach_an_arm_is_told_how_far() {
+fn beyond_its_reach_an_arm_says_how_far() {
     let arm = ur10e().arm();
     let down = DQuat::from_rotation_x(std::f64::consts::PI);
     let at = |x: f64, y: f64, z: f64| Frame { position: DVec3::new(x, y, z), rotation: down };

@@ -183,7 +183,7 @@ fn every_seeded_fault_is_found() {
     }
 }
 
-/// A fault that is told with its place: what it is, how it comes in, and the check, layer and pass (from 0) that tell it.
+/// A fault that is reported with its place: what it is, how it is planted, and the check, layer and pass (from 0) that report it.
 type Placed = (&'static str, fn(&mut Vec<Layer>, &mut Profile), &'static str, Option<usize>, Option<usize>);
 
 /// Passes that run through these places beside the first point of a pass, mm.
@@ -219,7 +219,7 @@ const PLACED: [Placed; 20] = [
     (
         "a post in the way",
         |l, _| {
-            // It stands before the other passes come.
+            // It is in place before the other passes come.
             let (at, mut post) = (l[0].passes[1].points[0], l[0].passes[0].clone());
             (post.closed, post.points) =
                 (false, vec![at + DVec3::new(0.0, 0.0, 40.0), at + DVec3::new(20.0, 0.0, 40.0)]);
@@ -384,8 +384,9 @@ fn whole_plans_are_clean_of_spikes_craters_and_low_travels() {
             let layers = planned(part, &profile, usize::MAX);
             let findings = check::check(&layers, &profile, plan::deposit_settings(&profile), &Task::new()).unwrap();
             let ways = ["retraced", "alternating-ends", "low-travel", "cooling"];
-            let told: Vec<String> = findings.iter().filter(|f| ways.contains(&f.kind)).map(|f| f.sentence()).collect();
-            assert_eq!(told, [""; 0], "{part} {strategy}");
+            let reported: Vec<String> =
+                findings.iter().filter(|f| ways.contains(&f.kind)).map(|f| f.sentence()).collect();
+            assert_eq!(reported, [""; 0], "{part} {strategy}");
         }
     }
 }
@@ -432,7 +433,7 @@ fn points_too_dense_for_the_controller_are_found() {
 }
 
 #[test]
-fn every_check_tells_what_why_and_what_to_do() {
+fn every_check_says_what_why_and_what_to_do() {
     for check in &CHECKS {
         for text in [check.what, check.why, check.example, check.remedy] {
             assert!(text.len() > 20, "{}", check.name);

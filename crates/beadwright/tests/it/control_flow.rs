@@ -1,5 +1,5 @@
 //! Loops, branches and jumps of programs, as far as their bounds and conditions are known: run as a controller runs them.
-//! What is not known is told, and its lines are read once.
+//! What is not known is reported, and its lines are read once.
 
 use beadwright::dialect::reading::{ArcCodes, Options, ReadError, ReadProgram, read};
 
@@ -81,7 +81,7 @@ fn fanuc_loop(head: &str, end: &str) -> String {
 }
 
 #[test]
-fn loops_that_cannot_be_counted_are_told_and_endless_ones_refused() {
+fn loops_that_cannot_be_counted_are_reported_and_endless_ones_refused() {
     let once = [
         "FOR I=1 TO N\nLIN {X 10}\nENDFOR",
         "FOR i FROM 1 TO n DO\nMoveL [[10,0,0]],v10,fine,t;\nENDFOR",
@@ -103,7 +103,7 @@ fn loops_that_cannot_be_counted_are_told_and_endless_ones_refused() {
     }
 }
 
-/// Where the arc burns first to 10, then back and forth; the branch is what stands between.
+/// Where the arc burns first to 10, then back and forth; the branch is what lies between.
 #[test]
 fn branches_run_where_their_conditions_are_known() {
     let [ahead, back] = ["LIN {X 10}", "LIN {X 0}"];
@@ -144,9 +144,9 @@ fn branches_run_where_their_conditions_are_known() {
     }
 }
 
-/// A condition of which nothing is known: told, and no motion is lost.
+/// A condition of which nothing is known: reported, and no motion is lost.
 #[test]
-fn branches_of_which_nothing_is_known_are_told() {
+fn branches_of_which_nothing_is_known_are_reported() {
     let unknown = [
         "IF N > 3 THEN\nLIN {X 10}\nELSE\nLIN {X 0}\nENDIF",
         "IF n>3 THEN\nMoveL [[10,0,0]],v10,fine,t;\nELSE\nMoveL [[0,0,0]],v10,fine,t;\nENDIF",

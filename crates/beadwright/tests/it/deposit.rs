@@ -171,7 +171,7 @@ fn figures_of_parallel_beads_match_the_overlap_in_closed_form() {
     assert_eq!((figures.void, figures.low, figures.overfill), (0.0, 0.0, 0.0));
     let rise = BEAD.rise(d);
     assert!((figures.mean() / rise - 1.0).abs() < 0.01, "{} {rise}", figures.mean());
-    // At 0.95 w the middle stands at 0.195 h: a void where 1 − (2y/w)² + 1 − (2(d−y)/w)² < 0.35.
+    // At 0.95 w the middle is at 0.195 h: a void where 1 − (2y/w)² + 1 − (2(d−y)/w)² < 0.35.
     let wide = 0.95 * 5.0;
     let judged = judge(&island, &lines(wide), 0.02);
     // With s the distance from the middle in half widths: one bead reaches there where s > 1 − 0.95.

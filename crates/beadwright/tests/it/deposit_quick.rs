@@ -47,7 +47,7 @@ fn agree(name: &str, settings: DepositSettings, [quick, slow]: &[Judgement; 2], 
     near("void %", a.void_percent(), b.void_percent(), 0.02);
     near("overfill %", a.overfill_percent(), b.overfill_percent(), 0.02);
     near("outside %", a.outside_percent(), b.outside_percent(), 0.02);
-    // Ridges tell these from a line across them.
+    // Ridges find these from a line across them.
     near("low %", a.low_percent(), b.low_percent(), most_low);
     near("mean", a.mean(), b.mean(), 1e-3 * h);
     near("deviation", a.deviation(), b.deviation(), 1e-3 * h);

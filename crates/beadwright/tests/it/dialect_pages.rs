@@ -140,8 +140,8 @@ fn every_dialect_has_a_page() {
 #[test]
 fn the_page_of_ones_own_names_all_data() {
     let page = std::fs::read_to_string(docs().join("your-own.md")).unwrap();
-    let told =
-        |name: &str| assert!(page.contains(&format!("`{name}`")), "docs/dialects/your-own.md does not tell {name}");
+    let mentions =
+        |name: &str| assert!(page.contains(&format!("`{name}`")), "docs/dialects/your-own.md does not mention {name}");
     let profile = profile("cmt-al2319-kuka");
     let refuse = |layer: &str| {
         let texts = [("dialect.toml", "file = \"x.txt\""), ("layer.txt", layer)];
@@ -157,14 +157,14 @@ fn the_page_of_ones_own_names_all_data() {
     };
     let job = names(&refuse("{{ nothing }}"), "there are ");
     assert!(job.len() > 20, "{job:?}");
-    job.iter().for_each(|name| told(name));
+    job.iter().for_each(|name| mentions(name));
     for kind in ["travel", "arc-on", "weld", "wire-feed", "crater", "arc-off", "dwell"] {
-        told(kind);
+        mentions(kind);
         let said = refuse(&format!(
             "{{% for step in steps %}}{{% if step.kind == \"{kind}\" %}}{{{{ step.none }}}}{{% endif %}}{{% endfor %}}"
         ));
-        names(&said, "it has ").iter().for_each(|name| told(name));
+        names(&said, "it has ").iter().for_each(|name| mentions(name));
     }
     let circle = "{% for step in steps %}{% if step.kind == \"weld\" and step.circle %}{{ step.circle.none }}{% endif %}{% endfor %}";
-    names(&refuse(circle), "it has ").iter().for_each(|name| told(name));
+    names(&refuse(circle), "it has ").iter().for_each(|name| mentions(name));
 }

@@ -248,10 +248,10 @@ fn what_the_project_reads_is_the_same() {
     }
 }
 
-/// A form of ArcTech stands where the arc is lit and where it ends, and nowhere else; speeds change in between, and ARCOFF
+/// A form of ArcTech is written where the arc is lit and where it ends, and nowhere else; speeds change in between, and ARCOFF
 /// moves at that of its own piece.
 #[test]
-fn arctech_forms_stand_where_the_arc_is_switched() {
+fn arctech_forms_are_written_where_the_arc_is_switched() {
     let mut profile = profile();
     profile.dialects.krl.as_mut().unwrap().arc = KrlArc::Arctech;
     let mut job = job();
@@ -301,7 +301,7 @@ fn the_krl_reader_refuses_what_arctech_would() {
         let mut bad = good.clone();
         let text = bad.get_mut(file).unwrap();
         *text = text.replacen(old, new, 1);
-        assert_ne!(*text, good[file], "{old:?} does not stand in {file}");
+        assert_ne!(*text, good[file], "{old:?} is not in {file}");
         assert!(!taken(&bad), "{old:?} became {new:?} in {file}, and the reader took it");
     }
 }
@@ -360,7 +360,7 @@ fn long_layers_of_krl_and_rapid_are_cut_between_passes() {
 }
 
 #[test]
-fn urscript_tells_the_payload() {
+fn urscript_sets_the_payload() {
     let mut profile = profile();
     assert!(!written("urscript", "demo", &job(), &profile)["demo.script"].contains("set_payload"));
     profile.dialects.urscript.as_mut().unwrap().payload = Some(4.2);
@@ -489,8 +489,8 @@ fn passes_too_long_for_a_program_are_lit_again() {
             let again: usize = cut.layers.iter().map(|l| l.passes.len()).sum::<usize>()
                 - whole.layers.iter().map(|l| l.passes.len()).sum::<usize>();
             assert!(again > 0, "{part} {max}");
-            let told = cut.summary.warnings.summaries().find(|w| w.kind == WarningKind::Relit).unwrap();
-            assert_eq!(told.total as usize, again);
+            let reported = cut.summary.warnings.summaries().find(|w| w.kind == WarningKind::Relit).unwrap();
+            assert_eq!(reported.total as usize, again);
             for pass in cut.layers.iter().flat_map(|l| &l.passes) {
                 let alone = Layer { passes: vec![pass.clone()], ..Layer::default() };
                 assert!(programmer().layer(&alone).instructions.len() <= max);
@@ -498,7 +498,7 @@ fn passes_too_long_for_a_program_are_lit_again() {
             // Each new start lies an overlap back, and a closed pass that is cut ends as far beyond its own start.
             let overlap = profile.start_stop.end_overlap.max(profile.bead.width);
             let length = |plan: &plan::Plan| plan.summary.metrics.deposited_length_mm;
-            let ends = told.count as f64 * (overlap - profile.start_stop.end_overlap);
+            let ends = reported.count as f64 * (overlap - profile.start_stop.end_overlap);
             let wanted = length(&whole) + again as f64 * overlap + ends;
             assert!((length(&cut) / wanted - 1.0).abs() < 1e-6, "{part} {max}: {} mm for {wanted}", length(&cut));
             let files = written("fanuc", part, &cut.layers, &profile);

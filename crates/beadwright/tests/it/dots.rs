@@ -46,7 +46,7 @@ fn planned(mesh: &Mesh, profile: &Profile) -> Plan {
     plan::plan("post", mesh, profile, &Task::new()).unwrap()
 }
 
-fn told(plan: &Plan, kind: WarningKind) -> usize {
+fn reported(plan: &Plan, kind: WarningKind) -> usize {
     plan.layers.iter().flat_map(|layer| &layer.warnings).filter(|warning| warning.kind == kind).count()
 }
 
@@ -86,7 +86,7 @@ fn a_post_too_small_for_a_bead_is_a_column_of_dots_with_its_metal() {
             let passes: Vec<&Pass> = plan.layers.iter().flat_map(|layer| &layer.passes).collect();
             assert_eq!(passes.len(), plan.layers.len(), "{corners} {degrees}");
             assert!(passes.iter().all(|pass| pass.kind == PassKind::Spot), "{corners} {degrees}");
-            assert_eq!(told(&plan, WarningKind::IslandTooSmall) + told(&plan, WarningKind::PassTooShort), 0);
+            assert_eq!(reported(&plan, WarningKind::IslandTooSmall) + reported(&plan, WarningKind::PassTooShort), 0);
             let seconds: f64 = passes.iter().map(|pass| pass.seconds(&profile.process)).sum();
             let (laid, wanted) = (rate(&profile) * seconds, area * HIGH);
             assert!((laid / wanted - 1.0).abs() < 1e-4, "{corners} {degrees}: {laid} for {wanted}");

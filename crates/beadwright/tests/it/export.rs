@@ -61,8 +61,8 @@ fn exported_beads_are_those_of_the_plan() {
         assert!(off < 1e-9, "{part} {strategy}: {length} for {}", metrics.deposited_length_mm);
         let ends = |n: usize| ["x", "y", "z"].map(|axis| column(&csv, &format!("{axis}{n} (mm)")));
         let ([x0, y0, z0], [x1, y1, z1]) = (ends(0), ends(1));
-        let told: f64 = (0..pieces.len()).map(|i| distance([x0[i], y0[i], z0[i]], [x1[i], y1[i], z1[i]])).sum();
-        assert!((told / length - 1.0).abs() < 1e-4, "{part} {strategy}: {told} for {length}");
+        let reported: f64 = (0..pieces.len()).map(|i| distance([x0[i], y0[i], z0[i]], [x1[i], y1[i], z1[i]])).sum();
+        assert!((reported / length - 1.0).abs() < 1e-4, "{part} {strategy}: {reported} for {length}");
         // Metal: the nominal feed lays the metal of each piece at its pace; craters are not pieces.
         let (area, nominal) = (profile.bead().area(), profile.process.deposition_speed);
         let metal: f64 = pieces.iter().map(|p| p.from.distance(p.to) / p.pace * area * nominal).sum();

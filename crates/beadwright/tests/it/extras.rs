@@ -1,4 +1,4 @@
-//! What some controllers can do besides: weaving, spline motions, and heights added to layers. Each is told, or refused.
+//! What some controllers can do besides: weaving, spline motions, and heights added to layers. Each is written, or refused.
 
 use crate::common;
 use beadwright::fill::StrategyName;
@@ -176,13 +176,13 @@ fn spline_motions_run_the_same_way() {
 /// Length, starts, travel and time as our own reader finds them, and what it does not apply.
 fn totals(files: &Files, main: &str) -> (String, bool) {
     let program = common::read_back(files, main).unwrap();
-    let told = ["added", "PDispSet", "an offset", "shifts"]
+    let reported = ["added", "PDispSet", "an offset", "shifts"]
         .iter()
         .any(|word| program.notes.iter().any(|note| note.contains(word)));
-    (format!("{:?}", program.totals()), told)
+    (format!("{:?}", program.totals()), reported)
 }
 
-/// Layers have heights of their own to be added: 0 until somebody sets them, which our reader then tells.
+/// Layers have heights of their own to be added: 0 until somebody sets them, which our reader then reports.
 #[test]
 fn layers_can_be_lifted() {
     for (post, name, main, zero, lifted) in [
@@ -206,7 +206,7 @@ fn layers_can_be_lifted() {
         assert_eq!(totals(&files, main), totals(&plain, main), "{post}");
         assert!(files.values().any(|text| text.contains(zero)), "{post}: no {zero}");
         files.values_mut().for_each(|text| *text = text.replacen(zero, lifted, 1));
-        assert!(totals(&files, main).1 || post == "urscript", "{post}: nothing told");
+        assert!(totals(&files, main).1 || post == "urscript", "{post}: nothing reported");
     }
     for (post, name) in [("gcode", "plasma-304-cnc"), ("marlin", "fdm-abs-0.4")] {
         let (plan, mut profile) = plan_of(name);

@@ -126,7 +126,7 @@ fn amf(mesh: &Mesh, unit: &str) -> String {
     text + "</volume></mesh></object></amf>"
 }
 
-/// Constellations turn about x, then y, then z, and place copies and each other; what they place stands nowhere else.
+/// Constellations turn about x, then y, then z, and place copies and each other; what they place is nowhere else.
 #[test]
 fn constellations_place_copies() {
     let mesh = cross();

@@ -55,7 +55,7 @@ fn walls_between_are_predicted() {
 }
 
 #[test]
-fn walls_that_tell_nothing_are_refused() {
+fn walls_that_determine_nothing_are_refused() {
     let (settings, weld) = pioneer();
     let one = measured(100.0, WALLS[1]);
     assert_eq!(WallLaw::fit(&[one], &settings, &weld), Err(WallFitError::TooFew));

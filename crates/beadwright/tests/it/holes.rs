@@ -1,4 +1,4 @@
-//! Holes that are closed: volumes are those of the whole solid, and what is left open is told.
+//! Holes that are closed: volumes are those of the whole solid, and what is left open is reported.
 #![allow(dead_code)]
 
 use crate::solids;
@@ -27,11 +27,11 @@ fn a_side_of_a_cube_comes_back_whole() {
         // Two facets of one side: a flat hole with four edges.
         let open = imported(&whole[2..]);
         assert!(open.repair.open_edges > 0);
-        let (small, told) = close(open.clone(), 1e-3);
-        assert_eq!((told.holes, small.mesh.triangles.len()), (0, 10));
-        assert!(told.left > 0 && told.sentences()[0].contains("left open"));
-        let (solid, told) = close(open, 1e3);
-        assert_eq!((solid.repair.open_edges, told.left, solid.mesh.triangles.len()), (0, 0, 12));
+        let (small, filled) = close(open.clone(), 1e-3);
+        assert_eq!((filled.holes, small.mesh.triangles.len()), (0, 10));
+        assert!(filled.left > 0 && filled.sentences()[0].contains("left open"));
+        let (solid, filled) = close(open, 1e3);
+        assert_eq!((solid.repair.open_edges, filled.left, solid.mesh.triangles.len()), (0, 0, 12));
         assert!((solid.mesh.volume() - volume).abs() < 1e-9 * volume, "{}", solid.mesh.volume());
         // Closed for any other reader too.
         assert_eq!(imported(&facets_of(&solid.mesh)).repair.open_edges, 0);
@@ -48,11 +48,11 @@ fn bites_of_a_sphere_are_closed_up_to_a_size() {
     let bites = bitten(&ball, at(DVec3::new(1.0, 0.3, 0.2)), 0.25 * radius);
     let bites = bitten(&bites, at(DVec3::new(-0.4, 0.8, -0.5)), 0.6 * radius);
     let open = imported(&bites);
-    let (some, told) = close(open.clone(), 0.9 * radius);
-    assert_eq!((told.holes, told.left), (1, 1), "{told:?}");
-    assert!(some.repair.open_edges > 0 && told.widest < 0.9 * radius && told.widest_left > 0.9 * radius);
-    let (solid, told) = close(open, 3.0 * radius);
-    assert_eq!((told.holes, told.left, solid.repair.open_edges, solid.repair.flipped), (2, 0, 0, 0));
+    let (some, filled) = close(open.clone(), 0.9 * radius);
+    assert_eq!((filled.holes, filled.left), (1, 1), "{filled:?}");
+    assert!(some.repair.open_edges > 0 && filled.widest < 0.9 * radius && filled.widest_left > 0.9 * radius);
+    let (solid, filled) = close(open, 3.0 * radius);
+    assert_eq!((filled.holes, filled.left, solid.repair.open_edges, solid.repair.flipped), (2, 0, 0, 0));
     // Flat covers cut off less than the caps of the bites.
     let (volume, most) = (solid.mesh.volume(), whole.mesh.volume());
     assert!(volume < most && volume > 0.9 * most, "{volume} of {most}");
@@ -60,7 +60,7 @@ fn bites_of_a_sphere_are_closed_up_to_a_size() {
 
 /// Areas of the legend by hand: a cube on the plate, and one on a corner.
 #[test]
-fn the_picture_tells_what_hangs_over() {
+fn the_picture_shows_what_hangs_over() {
     let area = |facets: &[Facet], name: &str| -> f64 {
         let picture = overhang::svg(&imported(facets).mesh).unwrap();
         let line = picture.lines().find(|line| line.contains(name)).unwrap();

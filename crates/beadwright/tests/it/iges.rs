@@ -371,7 +371,7 @@ fn composites_are_joined_in_any_order_and_direction() {
 }
 
 #[test]
-fn gaps_and_wrong_pointers_are_told() {
+fn gaps_and_wrong_pointers_are_reported() {
     let check = |draft: Draft, expect: &str| {
         let warnings = draft.read().warnings;
         assert!(warnings.iter().any(|w| w.contains(expect)), "{warnings:?} lacks {expect:?}");
@@ -411,7 +411,7 @@ fn gaps_and_wrong_pointers_are_told() {
 }
 
 #[test]
-fn cards_that_do_not_match_the_last_are_told() {
+fn cards_that_do_not_match_the_last_are_reported() {
     let mut cards = Draft::new(&[(110, 0, "110,0.,0.,0.,3.,0.,0.;")]).cards();
     let last = cards.pop().unwrap();
     cards.push(last.replace("P      1", "P      4"));

@@ -54,13 +54,13 @@ fn files_inherit_from_files() {
 }
 
 #[test]
-fn what_cannot_be_inherited_is_told() {
+fn what_cannot_be_inherited_is_reported() {
     let unknown = Profile::parse("inherits = \"cmt-steel-abc\"\n").unwrap_err();
     assert!(unknown.to_string().contains("Did you mean \"cmt-steel-abb\"?"), "{unknown}");
     let circle =
         Profile::parse_with("name = \"x\"\ninherits = \"me\"\n", &mut |_| Ok("inherits = \"me\"\n".to_owned()));
     assert!(matches!(&circle, Err(ProfileError::Text { line: 2, reason }) if reason.contains("circle")), "{circle:?}");
-    // Faults are told where they stand in the profile itself.
+    // Faults are reported where they are in the profile itself.
     let fault = Profile::parse(&FIVE_LINES.replace("9.0", "\"fast\"")).unwrap_err();
     assert!(matches!(fault, ProfileError::Text { line: 4, .. }), "{fault}");
     let fault = Profile::parse(&FIVE_LINES.replace("9.0", "-1.0")).unwrap_err();

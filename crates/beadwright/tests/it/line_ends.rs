@@ -32,9 +32,9 @@ fn hooks_stay_inside_cross_nothing_and_take_no_starts() {
                     let fault = sound::fault(&all, &island, profile.fill.machining_allowance);
                     assert!(fault.is_none(), "{name} {seed} at {degrees}°, {strategy:?}: {fault:?}");
                     // A thin wall is welded on from an end that lies near it; hooks move ends.
-                    let told =
+                    let counts =
                         format!("{name} {seed} at {degrees}°, {strategy:?}: {} for {}", hooked.len(), plain.len());
-                    assert!(hooked.len() <= plain.len() + 1, "{told}");
+                    assert!(hooked.len() <= plain.len() + 1, "{counts}");
                     starts[0] += plain.len();
                     starts[1] += hooked.len();
                     let length = |paths: &[Path]| paths.iter().map(Path::length).sum::<f64>();

@@ -64,7 +64,7 @@ fn check(path: &Path) -> bool {
     assert!(REFUSED.iter().all(|(refused, _)| *refused != name), "{name} was not refused");
     let (mut mesh, repair) = (import.mesh, import.repair);
     let layers = sliced(&mut mesh);
-    // A part that is no solid either gives islands or tells what was dropped.
+    // A part that is no solid either gives islands or reports what was dropped.
     assert!(layers.iter().any(|l| !l.islands.is_empty() || !l.warnings.is_empty()), "{name}: {repair:?}");
     let is_closed = repair.open_edges == 0 && repair.non_manifold_edges == 0;
     let overlaps = layers.iter().flat_map(|l| &l.warnings).any(|w| w.kind == WarningKind::ContoursUnited);

@@ -59,7 +59,7 @@ fn the_quarters_of_every_scale_are_told_apart() {
 }
 
 #[test]
-fn every_curve_of_a_plot_is_told_from_the_others_and_named_inside_it() {
+fn every_curve_of_a_plot_is_distinct_and_named_inside_it() {
     let names =
         ["loop", "raster", "zigzag", "contour", "compound", "hybrid", "spiral", "fermat", "hilbert", "partition"];
     let curve = |name: &str| Curve { name: name.to_owned(), points: vec![DVec2::ZERO, DVec2::new(9.0, 1.0)] };

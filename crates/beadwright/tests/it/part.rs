@@ -130,7 +130,7 @@ fn placements_scale_centre_and_ask_for_units() {
 }
 
 #[test]
-fn a_part_is_moved_and_turned_where_it_stands() {
+fn a_part_is_moved_and_turned_where_it_is() {
     let placed = |placement: &Placement| placement.solid(solid("propeller"), 7.54).unwrap().mesh;
     let middle = |mesh: &Mesh| ((mesh.bounds().0 + mesh.bounds().1) / 2.0).truncate();
     for (turn, angle) in [(DVec3::ZERO, 30.0), (DVec3::new(20.0, -50.0, 170.0), 100.0), (DVec3::X * 90.0, -200.0)] {
@@ -143,7 +143,7 @@ fn a_part_is_moved_and_turned_where_it_stands() {
             let wanted = way.rotate(a.truncate() - foot) + foot + shift;
             assert!(b.truncate().distance(wanted) < 1e-5 && (a.z - b.z).abs() < 1e-9, "{wanted} became {b}");
         }
-        // The middle of a centred part stands where it is told to.
+        // The middle of a centred part is where it was asked to be.
         let centred = Placement { centre: true, ..first };
         let after = placed(&centred.moved(shift, angle, middle(&placed(&centred))));
         assert!(middle(&after).distance(DVec2::new(340.0, 72.5)) < 1e-9, "{}", middle(&after));

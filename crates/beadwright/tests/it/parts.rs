@@ -74,7 +74,7 @@ fn each_part_is_finished_before_the_next() {
 
 /// Followed move by move: with the arc off the tip never gets below the top of a part that it flies over.
 #[test]
-fn ways_lead_over_all_that_stands() {
+fn ways_lead_over_everything_built() {
     let (clearance, side, gap) = (20.0, 30.0, 80.0);
     let profile = profile();
     assert_eq!(profile.travel.clearance, clearance);

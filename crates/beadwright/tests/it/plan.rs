@@ -237,7 +237,7 @@ fn same_as_plan(case: &str, motion: &Motion, plan: &Plan, profile: &Profile) {
         assert!(distance(*weld.points.last().unwrap(), pass.end().unwrap().to_array()) < 0.002, "{case}");
         let length: f64 = weld.points.windows(2).map(|w| distance(w[0], w[1])).sum();
         assert!((length - pass.length()).abs() < 0.02 + 1e-4 * length, "{case}: {length} for {}", pass.length());
-        // Dropping short moves may shift a change of speed by one of them; the time tells that nothing else did.
+        // Dropping short moves may shift a change of speed by one of them; the time shows that nothing else did.
         let time: f64 = weld.points.windows(2).zip(&weld.speeds).map(|(w, s)| distance(w[0], w[1]) / s).sum();
         assert!(
             (time / pass.seconds(&profile.process) - 1.0).abs() < 0.01,
@@ -439,11 +439,11 @@ fn a_gap_between_two_blocks_gives_empty_layers() {
     let triangles = low.triangles.into_iter().chain(high.triangles.into_iter().map(|t| t.map(|v| v + offset)));
     let (mesh, _) = Mesh::from_triangles(vertices, triangles.collect());
     let plan = plan_of(&mesh, &profile("cmt-al2319-kuka", "zigzag", 0.0));
-    let told = |kind| plan.summary.warnings.summaries().find(|w| w.kind == kind).unwrap();
-    assert_eq!(told(WarningKind::EmptyLayer).layers, [(3, 5)]);
+    let warning = |kind| plan.summary.warnings.summaries().find(|w| w.kind == kind).unwrap();
+    assert_eq!(warning(WarningKind::EmptyLayer).layers, [(3, 5)]);
     assert_eq!(plan.summary.metrics.layers, 6);
     // The upper block would be welded into the air.
-    let hanging = told(WarningKind::NothingBelow);
+    let hanging = warning(WarningKind::NothingBelow);
     assert_eq!((hanging.layers.clone(), hanging.largest.size), (vec![(6, 6)], 6.0));
     assert_eq!(plan.summary.forbidden, [hanging.sentence()]);
 }

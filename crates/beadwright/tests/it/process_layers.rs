@@ -1,4 +1,4 @@
-//! Other speeds for some layers: the beads stay the same, and programs tell speed, wire feed and job where they change.
+//! Other speeds for some layers: the beads stay the same, and programs set speed, wire feed and job where they change.
 
 use crate::common;
 use beadwright::fill::StrategyName;
@@ -43,7 +43,7 @@ fn plain_speed(follow: Follow, pace: f64) -> f64 {
 }
 
 #[test]
-fn programs_tell_speed_feed_and_job() {
+fn programs_set_speed_feed_and_job() {
     let mut profile = flat(profile("cmt-al2319-kuka"));
     profile.fill.strategy = StrategyName::Contour;
     let nominal = profile.process.deposition_speed;
@@ -57,7 +57,7 @@ fn programs_tell_speed_feed_and_job() {
         assert!(text.contains(&format!("JOB( {job} )")) && text.contains(&format!("$ANOUT[1] = {rate:.4}")), "{text}");
         assert!(text.contains(&format!("$VEL.CP = {:.6}", nominal * rate / 1000.0)), "{text}");
     }
-    // Nothing that the cell would not be told.
+    // Nothing that is not sent to the cell.
     let refused = |change: fn(&mut Profile)| {
         let mut profile = faster(profile.clone());
         change(&mut profile);

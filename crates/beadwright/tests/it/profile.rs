@@ -105,7 +105,7 @@ fn stepover_comes_from_the_overlap() {
 }
 
 #[test]
-fn raster_angles_turn_as_told() {
+fn raster_angles_turn_as_the_profile_says() {
     let angles = |turn: &str, increment: f64| {
         let text = text(KUKA).replace("raster_turn = \"alternate\"", &format!("raster_turn = \"{turn}\""));
         let mut profile = Profile::parse(&text).unwrap();
@@ -174,7 +174,7 @@ fn missing_keys_are_named_at_their_section() {
 }
 
 #[test]
-fn all_missing_keys_are_told_at_once() {
+fn all_missing_keys_are_reported_at_once() {
     for (name, full) in BUILT_IN {
         // What a profile without one key lacks, it lacks together with all others.
         let document: DocumentMut = full.parse().unwrap();
@@ -193,13 +193,13 @@ fn all_missing_keys_are_told_at_once() {
             }
         }
         let error = Profile::parse(&bare.to_string()).unwrap_err().to_string();
-        let told = error.split_once("keys are missing: ").unwrap().1.trim_end_matches('.');
-        let mut told: Vec<&str> = told.split(", ").collect();
-        told.sort_unstable();
+        let reported = error.split_once("keys are missing: ").unwrap().1.trim_end_matches('.');
+        let mut reported: Vec<&str> = reported.split(", ").collect();
+        reported.sort_unstable();
         needed.sort_unstable();
-        assert_eq!(told, needed, "{name}");
+        assert_eq!(reported, needed, "{name}");
     }
-    // Whole sections are told by their keys, and what is there is not.
+    // Missing sections are reported key by key; keys that are there are not.
     let error = Profile::parse("name = \"empty\"\n[wire]\ndiameter = 1.2\n").unwrap_err().to_string();
     assert!(error.starts_with("line 1 of the profile: ") || error.starts_with("line 2 of the profile: "), "{error}");
     for key in ["description", "posts", "wire.density", "process.deposition_speed", "bead.width", "travel.clearance"] {
@@ -475,7 +475,7 @@ fn ranges_depend_on_the_bead() {
 }
 
 #[test]
-fn a_stepover_stands_exactly_with_a_free_overlap() {
+fn a_stepover_is_given_exactly_with_a_free_overlap() {
     let both = "overlap = \"tangent\"\nstepover = 3.5";
     let edited = text(CNC).replace("overlap = \"tangent\"", both);
     check_text(
@@ -510,7 +510,7 @@ fn tolerances_of_programs_are_checked() {
 }
 
 #[test]
-fn a_free_overlap_without_a_stepover_is_refused_where_it_stands() {
+fn a_free_overlap_without_a_stepover_is_refused_at_its_line() {
     check(CNC, "overlap = \"tangent\"", "overlap = \"free\"", &["stepover", "free"]);
 }
 

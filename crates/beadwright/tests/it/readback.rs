@@ -206,7 +206,7 @@ fn relative_e_and_inches_of_filament_give_the_same() {
 }
 
 #[test]
-fn the_filament_is_told_by_options_comments_or_flavour() {
+fn the_filament_is_known_by_options_comments_or_flavour() {
     let body = "G28\nG1 Z1 F60\nG1 X10 E1\n";
     let volume = |text: &str, options: &Options| try_read(text, options).unwrap().totals().volume_mm3.unwrap();
     let area = |d: f64| FRAC_PI_4 * d * d;
@@ -509,7 +509,7 @@ fn rapid_outputs_and_loaded_modules() {
 }
 
 #[test]
-fn errors_tell_the_line_and_the_remedy() {
+fn errors_name_the_line_and_the_remedy() {
     let error = |text: &str| try_read(text, &Options::default()).unwrap_err().to_string();
     assert!(
         error("solid cube\nfacet normal 0 0 1\n").contains("neither G-code, KRL, RAPID, FANUC TP, INFORM nor URScript")

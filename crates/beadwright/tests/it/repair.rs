@@ -1,4 +1,4 @@
-//! Broken meshes: what the report tells, and what is left after the mending.
+//! Broken meshes: what the report says, and what is left after the mending.
 
 use crate::solids;
 
@@ -65,7 +65,7 @@ fn a_duplicate_triangle_goes() {
 }
 
 #[test]
-fn a_cube_that_stands_there_twice_is_one_cube() {
+fn a_cube_that_is_there_twice_is_one_cube() {
     let facets = joined(&[cube(), cube()]);
     check(&facets, RepairReport { triangles_read: 24, duplicate: 12, ..clean() }, 1000.0, SIZE);
 }
@@ -219,7 +219,7 @@ fn a_cavity_is_taken_off_the_volume() {
 }
 
 #[test]
-fn every_fault_is_told_in_a_sentence() {
+fn every_fault_is_reported_in_a_sentence() {
     let faults = RepairReport {
         degenerate: 1,
         duplicate: 2,

@@ -150,11 +150,11 @@ fn resolution_grows_with_the_layer_only() {
 }
 
 #[test]
-fn many_warnings_of_a_layer_are_told_in_part() {
+fn many_warnings_of_a_layer_are_shown_in_part() {
     let decoded = decode(&encode::layer(&square(50.0), &process(), None));
-    let told = decoded.warnings.as_array().unwrap();
-    assert_eq!((decoded.head[8], told.len()), (100.0, 30));
-    assert_eq!(told[0][2], "12.3 mm² narrower than a bead left empty");
+    let shown = decoded.warnings.as_array().unwrap();
+    assert_eq!((decoded.head[8], shown.len()), (100.0, 30));
+    assert_eq!(shown[0][2], "12.3 mm² narrower than a bead left empty");
 }
 
 #[test]
@@ -207,8 +207,8 @@ fn colours_span_what_the_beads_have() {
         [values().fold(f64::MAX, f64::min), values().fold(f64::MIN, f64::max)]
     };
     for (key, ends) in [("width", ends(|piece| piece.width)), ("speed", ends(|piece| piece.pace))] {
-        for (told, true_value) in data["ranges"][key].as_array().unwrap().iter().zip(ends) {
-            assert!((told.as_f64().unwrap() - true_value).abs() <= 0.0005 + 1e-9, "{key}");
+        for (shown, true_value) in data["ranges"][key].as_array().unwrap().iter().zip(ends) {
+            assert!((shown.as_f64().unwrap() - true_value).abs() <= 0.0005 + 1e-9, "{key}");
         }
     }
 }
@@ -233,13 +233,13 @@ fn a_warning_leads_to_its_place_and_words_are_explained() {
     });
 }
 
-/// What stands in the cell beside a word.
+/// The cell beside a word.
 fn cell<'a>(html: &'a str, name: &str) -> &'a str {
     html.split_once(&format!("<th scope=\"row\">{name}</th><td>")).unwrap().1.split_once('<').unwrap().0
 }
 
 #[test]
-fn the_page_tells_of_what_is_laid_only() {
+fn the_page_speaks_only_of_what_is_laid() {
     for strategy in ["raster", "zigzag", "contour", "compound", "hybrid", "loop", "hilbert"] {
         let mut profile = profile("cmt-al2319-kuka");
         profile.fill.strategy = strategy.parse().unwrap();
@@ -255,10 +255,14 @@ fn the_page_tells_of_what_is_laid_only() {
                     "{part}, {strategy}: {kind:?} in {key}"
                 );
             }
-            let told = cell(&html, "Strategy");
-            assert!(told.starts_with(&format!("{strategy}: ")), "{told}");
-            assert_eq!(told.contains("scan lines at"), ["raster", "zigzag", "compound"].contains(&strategy), "{told}");
-            assert_eq!(told.contains("perimeter"), ["compound", "hilbert"].contains(&strategy), "{told}");
+            let shown = cell(&html, "Strategy");
+            assert!(shown.starts_with(&format!("{strategy}: ")), "{shown}");
+            assert_eq!(
+                shown.contains("scan lines at"),
+                ["raster", "zigzag", "compound"].contains(&strategy),
+                "{shown}"
+            );
+            assert_eq!(shown.contains("perimeter"), ["compound", "hilbert"].contains(&strategy), "{shown}");
         }
     }
 }

@@ -15,7 +15,7 @@ const FLAGS: &str = "--headless --no-sandbox --disable-gpu --use-gl=angle --use-
     --enable-unsafe-swiftshader --disable-quic --no-first-run --disable-background-networking --disable-component-update \
     --disable-sync --virtual-time-budget=300000 --dump-dom";
 
-/// Reports faults and the steps of a test in the title of the page, which then stands in the text that comes back.
+/// Reports faults and the steps of a test in the title of the page, which is then in the text that comes back.
 const BEFORE: &str = "<script>
 const faults = [];
 addEventListener('error', event => faults.push(event.message));
@@ -54,7 +54,7 @@ fn ask(html: &str, script: &str) -> Option<serde_json::Value> {
            while (!shown.layer || (space.scene && !solid.dataset.ready)) await rest(20);
            {script}
          }})().catch(error => {{ faults.push(String(error)); return null; }})
-           .then(value => {{ document.body.dataset.told = JSON.stringify({{ value, faults }}); }});
+           .then(value => {{ document.body.dataset.answer = JSON.stringify({{ value, faults }}); }});
          </script></body>"
     );
     let html = html.replace("<head>", &format!("<head>{BEFORE}")).replace("</body>", &after);
@@ -64,10 +64,11 @@ fn ask(html: &str, script: &str) -> Option<serde_json::Value> {
     command.args(FLAGS.split_whitespace()).arg(format!("--user-data-dir={}", folder.join("user").display()));
     let output = command.arg(format!("file://{}", file.display())).stderr(Stdio::null()).output().unwrap();
     let dom = String::from_utf8(output.stdout).unwrap();
-    let told = dom.split_once("data-told=\"").expect("the page tells").1.split_once('"').unwrap().0;
-    let told: serde_json::Value = serde_json::from_str(&told.replace("&quot;", "\"").replace("&amp;", "&")).unwrap();
-    assert_eq!(told["faults"], serde_json::json!([]));
-    Some(told["value"].clone())
+    let answer = dom.split_once("data-answer=\"").expect("the page answers").1.split_once('"').unwrap().0;
+    let answer: serde_json::Value =
+        serde_json::from_str(&answer.replace("&quot;", "\"").replace("&amp;", "&")).unwrap();
+    assert_eq!(answer["faults"], serde_json::json!([]));
+    Some(answer["value"].clone())
 }
 
 #[test]
@@ -88,21 +89,21 @@ fn layers_and_views_are_shared_by_both_pictures() {
         pointOutNext(1);
         await rest(50);
         return { first, now: $('layer-now').textContent, ramps, tip: $('tip').textContent, layers: space.scene?.layers.filter(Boolean).length };";
-    let Some(told) = ask(&page(&plan, &profile), script) else { return };
-    assert_eq!(told["first"], plan.layers.len() - 1, "the whole part is shown first");
-    assert!(told["now"].as_str().unwrap().starts_with(&format!("5 of {}", plan.layers.len())));
+    let Some(answer) = ask(&page(&plan, &profile), script) else { return };
+    assert_eq!(answer["first"], plan.layers.len() - 1, "the whole part is shown first");
+    assert!(answer["now"].as_str().unwrap().starts_with(&format!("5 of {}", plan.layers.len())));
     let pieces = || plan.layers.iter().flat_map(|layer| &layer.passes).flat_map(|pass| pass.segments());
     let least = pieces().map(|piece| piece.width).fold(f64::MAX, f64::min);
-    assert_eq!(told["ramps"][1], serde_json::json!(["width", false, format!("{least:.2} mm")]));
-    assert_eq!(told["ramps"][4][1], true);
-    let tip = told["tip"].as_str().unwrap();
+    assert_eq!(answer["ramps"][1], serde_json::json!(["width", false, format!("{least:.2} mm")]));
+    assert_eq!(answer["ramps"][4][1], true);
+    let tip = answer["tip"].as_str().unwrap();
     let first = plan.layers[4].passes[0].segments().next().unwrap();
     let speed = profile.process.speed_at(first.pace);
     for word in ["Layer 5, pass 1 of", &format!("{:.2} mm wide", first.width), &format!("{speed:.1} mm/s")] {
         assert!(tip.contains(word), "{word}: {tip}");
     }
     // Null where the browser has no WebGL 2.
-    assert!(told["layers"].is_null() || told["layers"] == plan.layers.len());
+    assert!(answer["layers"].is_null() || answer["layers"] == plan.layers.len());
 }
 
 #[test]
@@ -124,12 +125,12 @@ fn the_bead_under_the_pointer_is_the_one_that_lies_there() {
         y = middle.y,
         z = top.z
     );
-    let Some(told) = ask(&page(&plan, &profile), &script) else { return };
-    assert_eq!((&told["flat"]["layer"], &told["flat"]["pass"]), (&top.index.into(), &0.into()));
-    assert!(told["beside"].is_null());
-    if !told["deep"].is_null() {
-        assert_eq!((&told["deep"]["layer"], &told["deep"]["pass"]), (&top.index.into(), &0.into()));
-        assert!(told["sky"].is_null());
+    let Some(answer) = ask(&page(&plan, &profile), &script) else { return };
+    assert_eq!((&answer["flat"]["layer"], &answer["flat"]["pass"]), (&top.index.into(), &0.into()));
+    assert!(answer["beside"].is_null());
+    if !answer["deep"].is_null() {
+        assert_eq!((&answer["deep"]["layer"], &answer["deep"]["pass"]), (&top.index.into(), &0.into()));
+        assert!(answer["sky"].is_null());
     }
 }
 
@@ -142,8 +143,8 @@ fn without_webgl_a_sentence_says_so_and_the_layers_stay() {
     })(HTMLCanvasElement.prototype.getContext);</script></head>";
     let html = page(&plan, &profile).replace("</head>", none);
     let script = "return { view: $('stages').dataset.view, sentence: $('no-solid').textContent, passes: shown.layer.passes.length };";
-    let Some(told) = ask(&html, script) else { return };
-    assert_eq!(told["view"], "layer");
-    assert!(told["sentence"].as_str().unwrap().contains("no WebGL 2"));
-    assert_eq!(told["passes"], plan.layers.last().unwrap().passes.len());
+    let Some(answer) = ask(&html, script) else { return };
+    assert_eq!(answer["view"], "layer");
+    assert!(answer["sentence"].as_str().unwrap().contains("no WebGL 2"));
+    assert_eq!(answer["passes"], plan.layers.last().unwrap().passes.len());
 }

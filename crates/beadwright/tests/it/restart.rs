@@ -171,9 +171,9 @@ fn posts_that_cannot_restart_refuse() {
     }
 }
 
-/// Lines of the profile stand where they should, each as often as it should.
+/// Lines of the profile are where they should be, each as often as it should.
 #[test]
-fn hooks_stand_at_their_places() {
+fn hooks_are_written_at_their_places() {
     for (post, name, _) in POSTS {
         let mut profile = profile(post, name);
         let plan = planned(&profile);
@@ -219,9 +219,9 @@ fn hooks_stand_at_their_places() {
     }
 }
 
-/// What the cell must supply is told at the head of every program.
+/// What the cell must supply is listed at the head of every program.
 #[test]
-fn the_head_tells_what_the_cell_must_supply() {
+fn the_head_lists_what_the_cell_must_supply() {
     for (post, name, main) in POSTS {
         let profile = profile(post, name);
         let files = written(post, &planned(&profile), &profile);

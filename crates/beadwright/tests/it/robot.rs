@@ -17,7 +17,7 @@ fn cell(name: &str) -> Cell {
     Cell::built_in(name).unwrap()
 }
 
-/// A cell that tells neither home nor how thick its arm is.
+/// A cell that gives neither home nor how thick its arm is.
 fn bare(name: &str) -> Cell {
     Cell { home: None, body: None, ..cell(name) }
 }
@@ -62,7 +62,7 @@ fn stands(cell: &Cell, joints: [f64; 6], at: [f64; 3], along: DVec3) {
 }
 
 #[test]
-fn the_kuka_stands_as_its_maker_tells() {
+fn the_kuka_reaches_where_its_maker_says() {
     // Straight up, the home pose, stretched level, and turned: A1 runs clockwise.
     stands(&kuka(), [0.0, -90.0, 0.0, 0.0, 0.0, 0.0], [10.0, 0.0, 2313.0], DVec3::Z);
     stands(&kuka(), [0.0, -90.0, 90.0, 0.0, 0.0, 0.0], [1173.0, 0.0, 1450.0], DVec3::X);
@@ -76,7 +76,7 @@ fn the_kuka_stands_as_its_maker_tells() {
 }
 
 #[test]
-fn the_abb_stands_as_its_maker_tells() {
+fn the_abb_reaches_where_its_maker_says() {
     stands(&abb(), [0.0; 6], [955.0, 0.0, 1195.0], DVec3::X);
     stands(&abb(), [0.0, 0.0, -90.0, 0.0, 0.0, 0.0], [30.0, 0.0, 1880.0], DVec3::Z);
     stands(&abb(), [90.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 955.0, 1195.0], DVec3::Y);
@@ -91,7 +91,7 @@ fn the_abb_stands_as_its_maker_tells() {
 
 /// Poses worked out by hand from the axes of their descriptions: all joints at zero, straight up, turned, hand down.
 #[test]
-fn arms_for_arc_welding_stand_as_described() {
+fn arms_for_arc_welding_reach_as_described() {
     let abb = bare("abb-irb2600-12-165");
     stands(&abb, [0.0; 6], [1030.0, 0.0, 1260.0], DVec3::X);
     stands(&abb, [0.0, 0.0, -90.0, 0.0, 0.0, 0.0], [35.0, 0.0, 2025.0], DVec3::Z);
@@ -147,7 +147,7 @@ fn arms_for_arc_welding_stand_as_described() {
         assert!((flange.rotation * DVec3::X).distance(x.into()) < 2e-6, "{}", cell.name);
         assert!((flange.rotation * DVec3::Z).distance(z.into()) < 2e-6, "{}", cell.name);
     }
-    // Stretched out, the wrist is as far from axis 1 as the makers tell, mm.
+    // Stretched out, the wrist is as far from axis 1 as the makers say, mm.
     for (cell, reach) in [(&abb, 1653.0), (&kuka, 1441.0), (&fanuc, 1441.0), (&yaskawa, 2010.0)] {
         let Shape::Opw(arm) = &cell.arm.shape else { panic!("lengths") };
         assert!((arm.a1 + arm.c2 + arm.c3.hypot(arm.a2) - reach).abs() < 1.0, "{}", cell.name);
@@ -192,7 +192,7 @@ fn there_and_back_for_100_000_poses() {
     }
 }
 
-/// The wrist lies behind the flange by the length of the hand, and the links are as long as the cell tells.
+/// The wrist lies behind the flange by the length of the hand, and the links are as long as the cell says.
 #[test]
 fn links_hang_together() {
     for (name, _) in BUILT_IN {
@@ -253,7 +253,7 @@ fn hits(reach: &Reach) -> Vec<([Solid; 2], f64)> {
 }
 
 #[test]
-fn what_the_arm_hits_is_told() {
+fn what_the_arm_hits_is_reported() {
     let full = Cell { home: None, ..cell("kuka-kr20-r1810") };
     let body = full.body.clone().unwrap();
     let with = |change: fn(&mut Body), at: PartPlace, track: &Track| {
@@ -271,7 +271,7 @@ fn what_the_arm_hits_is_told() {
     let thick = with(|b| b.base = 1100.0, full.part, &square());
     let sentence = thick.findings.iter().find(|f| matches!(f.trouble, Trouble::Collision { .. })).unwrap().sentence();
     assert!(sentence.contains("the torch hits the robot's base, by ") && sentence.contains("[body]"), "{sentence}");
-    assert!(thick.is_reachable(), "capsules only tell");
+    assert!(thick.is_reachable(), "capsules only warn");
     // Ten millimetres more of thickness go ten millimetres deeper.
     let thicker = with(|b| b.base = 1110.0, full.part, &square());
     let depth = |reach: &Reach| hits(reach).iter().find(|(s, _)| *s == [Solid::Torch, Solid::Base]).unwrap().1;
@@ -280,7 +280,7 @@ fn what_the_arm_hits_is_told() {
     assert!((depth(&thick) - (1100.0 + 25.0 - 1000.0)).abs() < 60.0, "{}", depth(&thick));
 }
 
-/// A post stands; what is welded at its foot afterwards brings the torch into it.
+/// A post is finished; what is welded at its foot afterwards brings the torch into it.
 #[test]
 fn the_part_as_far_as_it_is_welded_is_hit() {
     let full = Cell { home: None, ..cell("kuka-kr20-r1810") };
@@ -305,7 +305,7 @@ fn the_part_as_far_as_it_is_welded_is_hit() {
     let found = welded(20.0, true);
     assert!(found.iter().any(|(solids, _)| *solids == [Solid::Torch, Solid::Part]), "{found:?}");
     assert_eq!(welded(20.0, false), [], "the post is welded last");
-    assert_eq!(welded(400.0, true), [], "the post stands far away");
+    assert_eq!(welded(400.0, true), [], "the post is far away");
 }
 
 #[test]
@@ -416,7 +416,7 @@ fn a_slow_joint_is_found() {
 }
 
 #[test]
-fn a_slow_travel_is_only_told() {
+fn a_slow_travel_is_only_reported() {
     let mut slow = kuka();
     // Between what welding at 10 mm/s and travelling at 100 mm/s need.
     slow.arm.speeds[1] = 1.5;
@@ -432,7 +432,7 @@ fn a_slow_travel_is_only_told() {
 /// A torch at right angles to the flange, and axis 4 held fast: over (1173, 0) at 1150 mm the arm stands in the home
 /// pose, whose J5 is 0.
 #[test]
-fn a_singular_wrist_is_told() {
+fn a_singular_wrist_is_reported() {
     let mut cell = kuka();
     cell.torch.position = [300.0, 0.0, 0.0];
     cell.torch.rotation = [0.0, 90.0, 0.0];

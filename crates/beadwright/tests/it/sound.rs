@@ -1,5 +1,5 @@
 //! Never a wrong plan in silence: whatever the part, centre-lines stay inside it and do not cross, and what is not filled is
-//! told. Cases that broke the program lie in the shared folder (`BEADWRIGHT_CASES`).
+//! reported. Cases that broke the program lie in the shared folder (`BEADWRIGHT_CASES`).
 
 use crate::common;
 use crate::families;
@@ -39,18 +39,20 @@ fn is_sound(plan: &Plan, name: &str) {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1601_walls_stay_in_a_disk_with_holes() {
+fn walls_stay_in_a_disk_with_holes() {
+    // Case 1601.
     for name in ["disk_6holes.stl", "wall_155m.stl"] {
         let plan = planned(name, "wall");
         is_sound(&plan, name);
-        let told = |kind| plan.summary.warnings.summaries().any(|w| w.kind == kind);
-        assert!(told(WarningKind::Refilled), "{name}: contours in place of walls are told");
+        let reported = |kind| plan.summary.warnings.summaries().any(|w| w.kind == kind);
+        assert!(reported(WarningKind::Refilled), "{name}: contours in place of walls are reported");
     }
 }
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1602_no_island_is_lost_by_the_strategy() {
+fn no_island_is_lost_by_the_strategy() {
+    // Case 1602.
     let plan = planned("wall_island_lost.stl", "wall");
     is_sound(&plan, "wall_island_lost");
     assert!(plan.summary.metrics.coverage() > 0.95, "{}", plan.summary.metrics.coverage());
@@ -58,13 +60,15 @@ fn case_1602_no_island_is_lost_by_the_strategy() {
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1603_the_hybrid_does_not_cross_itself() {
+fn the_hybrid_does_not_cross_itself() {
+    // Case 1603.
     is_sound(&planned("hybrid_crossing.stl", "hybrid"), "hybrid_crossing");
 }
 
 #[test]
 #[cfg_attr(no_models, ignore = "no shared cases")]
-fn case_1604_what_is_left_of_the_height_is_told() {
+fn what_is_left_of_the_height_is_reported() {
+    // Case 1604.
     let mesh = import(&case("box60x60x2.99.stl"), &Task::new()).unwrap().mesh;
     let plan_by = |fit: LayerFit| {
         let mut profile = flat(profile_by("cmt-al2319-kuka", "loop"));
@@ -76,18 +80,21 @@ fn case_1604_what_is_left_of_the_height_is_told() {
         assert!(beadwright::check(&found.layers, &profile, settings, &Task::new()).unwrap().iter().all(sound));
         found
     };
-    let told = |plan: &Plan| plan.summary.notes.iter().find(|note| note.contains("mm high")).cloned();
+    let reported = |plan: &Plan| plan.summary.notes.iter().find(|note| note.contains("mm high")).cloned();
     let fixed = plan_by(LayerFit::Fixed);
-    assert!(fixed.layers.len() == 1 && told(&fixed).unwrap().contains("0.99 mm (33.1 %) are not built"), "{fixed:?}");
+    assert!(
+        fixed.layers.len() == 1 && reported(&fixed).unwrap().contains("0.99 mm (33.1 %) are not built"),
+        "{fixed:?}"
+    );
     let last = plan_by(LayerFit::Last);
-    assert!(last.layers.len() == 2 && told(&last).unwrap().contains("1.01 mm (33.8 %) above it"));
+    assert!(last.layers.len() == 2 && reported(&last).unwrap().contains("1.01 mm (33.8 %) above it"));
     let even = plan_by(LayerFit::Even);
-    assert!((even.layers.last().unwrap().z - 2.99).abs() < 1e-6 && told(&even).is_none());
+    assert!((even.layers.last().unwrap().z - 2.99).abs() < 1e-6 && reported(&even).is_none());
     let metal = |plan: &Plan| plan.summary.metrics.deposited_volume_mm3 / plan.summary.metrics.mesh_volume_mm3.unwrap();
     assert!((metal(&even) / (metal(&fixed) * 2.99 / 2.0) - 1.0).abs() < 0.02, "the metal follows the layers' height");
     assert_eq!(even.layers.len(), 2);
     let level = planned("box60x60x2.99.stl", "loop");
-    assert!((level.layers.last().unwrap().z - 2.99).abs() < 1e-6 && told(&level).is_none());
+    assert!((level.layers.last().unwrap().z - 2.99).abs() < 1e-6 && reported(&level).is_none());
 }
 
 /// What changes sides at a vertex crosses, and what touches there does not, at any turn.
@@ -298,7 +305,7 @@ fn bare_strips_along_the_edges_of_polygons_are_measured_as_they_are() {
     assert_eq!(fault, None);
 }
 
-/// `BEADWRIGHT_PARTS=2000` tries so many parts, `BEADWRIGHT_SEED=1000` others.
+/// `BEADWRIGHT_PARTS=2000` tries that many parts, `BEADWRIGHT_SEED=1000` others.
 #[test]
 fn random_parts_of_eight_families_are_filled_soundly_by_every_strategy() {
     let parts: u64 = std::env::var("BEADWRIGHT_PARTS").ok().and_then(|n| n.parse().ok()).unwrap_or(40);

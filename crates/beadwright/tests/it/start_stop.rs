@@ -324,9 +324,9 @@ fn totals_are_those_of_the_program() {
             let program = back(&written(name, &profile), main);
             let totals = program.totals();
             let unknown = if name == "gcode" { totals.travel_length_mm / profile.travel.speed } else { 0.0 };
-            let told = totals.time_s + unknown - down;
-            println!("{name}: {told:.3} s for {:.3} s", metrics.total_time_s);
-            near(told / metrics.total_time_s, 1.0, 1e-5);
+            let reported = totals.time_s + unknown - down;
+            println!("{name}: {reported:.3} s for {:.3} s", metrics.total_time_s);
+            near(reported / metrics.total_time_s, 1.0, 1e-5);
             near(totals.deposited_length_mm, LENGTH, 0.01);
             assert_eq!(totals.arc_starts, 4, "{name}");
             assert!(
@@ -534,7 +534,7 @@ fn the_deposit_model_sees_overlaps_and_leads() {
     let more = volumes(&with(&ends));
     assert!((more.0 / more.1 - 1.0).abs() < 1e-9, "{more:?}");
     assert!(more.0 > plain.0 + 1.0 && more.2 > plain.2, "{plain:?} {more:?}");
-    // A crater stands on one place, which no piece of a pass tells.
+    // A crater is filled at one place, which no piece of a pass shows.
     let crater = volumes(&with(&[("start_stop.crater_fill_time", "2.0")]));
     assert_eq!(crater.0, plain.0);
 }

@@ -132,8 +132,8 @@ fn a_truncated_binary_file_is_refused_with_byte_and_triangle() {
 fn an_ascii_file_with_a_bad_number_is_refused_with_its_line() {
     let text = ascii("cube", &cube());
     let mut lines: Vec<&str> = text.lines().collect();
-    // The fourth facet stands on lines 23 to 29. Replaced line, by what, told line, told reason.
-    for (line, bad, told, expect) in [
+    // The fourth facet is on lines 23 to 29. Replaced line, by what, reported line, reported reason.
+    for (line, bad, reported, expect) in [
         (25, "vertex 1.0 2,5 3.0", 25, "\"2,5\" is not a number"),
         (26, "vertex 1.0 2.5", 26, "three numbers are expected and one is missing"),
         (27, "vertex 1.0 2.5 \u{b5}", 27, "\"\u{b5}\" is not a number"),
@@ -144,7 +144,7 @@ fn an_ascii_file_with_a_bad_number_is_refused_with_its_line() {
         (28, "endfacet", 29, "endfacet without a facet"),
     ] {
         let good = std::mem::replace(&mut lines[line - 1], bad);
-        check(lines.join("\n"), &[&format!("line {told} of the ASCII STL"), expect]);
+        check(lines.join("\n"), &[&format!("line {reported} of the ASCII STL"), expect]);
         lines[line - 1] = good;
     }
 }

@@ -31,7 +31,7 @@ fn planned(mesh: &Mesh, strategy: &str) -> Plan {
     plan::plan("part", mesh, &profile, &Task::new()).unwrap()
 }
 
-fn told(plan: &Plan, kind: WarningKind) -> Option<WarningSummary> {
+fn warning(plan: &Plan, kind: WarningKind) -> Option<WarningSummary> {
     plan.summary.warnings.summaries().find(|w| w.kind == kind).cloned()
 }
 
@@ -44,7 +44,7 @@ fn a_roof_over_air_refuses_the_plan() {
     for degrees in [0.0, 17.0, 90.0] {
         for strategy in ["loop", "zigzag", "contour", "hybrid"] {
             let plan = planned(&blocks(&[BASE, roof], degrees), strategy);
-            let air = told(&plan, WarningKind::InTheAir).unwrap();
+            let air = warning(&plan, WarningKind::InTheAir).unwrap();
             assert_eq!(air.layers, [(6, 6)], "{strategy}: what is welded in the air counts once");
             assert_eq!(plan.summary.forbidden, [air.sentence()], "{strategy} at {degrees}°");
         }
@@ -58,7 +58,7 @@ fn a_bridge_between_two_towers_is_in_the_air() {
     let other = [(180.0, 200.0), (0.0, 20.0), (0.0, 20.0)];
     let bridge = [(0.0, 200.0), (0.0, 20.0), (20.0, 30.0)];
     let plan = planned(&blocks(&[towers, other, bridge], 0.0), "zigzag");
-    assert!(told(&plan, WarningKind::InTheAir).is_some());
+    assert!(warning(&plan, WarningKind::InTheAir).is_some());
     assert!(!plan.summary.forbidden.is_empty());
 }
 
@@ -67,7 +67,7 @@ fn a_bridge_between_two_towers_is_in_the_air() {
 fn a_small_island_that_hangs_is_left_out() {
     let knob = [(80.0, 92.0), (0.0, 12.0), (8.0, 10.0)];
     let plan = planned(&blocks(&[BASE, knob], 17.0), "loop");
-    let hanging = told(&plan, WarningKind::HangingIsland).unwrap();
+    let hanging = warning(&plan, WarningKind::HangingIsland).unwrap();
     assert_eq!((hanging.count, hanging.layers.clone()), (1, vec![(4, 4)]));
     assert!((hanging.total - 144.0).abs() < 1.0, "{}", hanging.total);
     assert_eq!(plan.summary.forbidden, [] as [String; 0]);
@@ -81,8 +81,8 @@ fn a_small_island_that_hangs_is_left_out() {
 fn a_column_that_begins_in_the_air_refuses_the_plan() {
     let column = [(80.0, 92.0), (0.0, 12.0), (4.0, 12.0)];
     let plan = planned(&blocks(&[BASE, column], 0.0), "loop");
-    assert!(told(&plan, WarningKind::HangingIsland).is_some());
-    let air = told(&plan, WarningKind::InTheAir).unwrap();
+    assert!(warning(&plan, WarningKind::HangingIsland).is_some());
+    let air = warning(&plan, WarningKind::InTheAir).unwrap();
     assert_eq!(plan.summary.forbidden, [air.sentence()]);
 }
 
@@ -96,7 +96,7 @@ fn steps_of_less_than_half_a_bead_are_on_metal() {
     let steps: Vec<_> = (0..10).map(step).collect();
     let plan = planned(&blocks(&steps, 0.0), "loop");
     assert_eq!(plan.summary.forbidden, [] as [String; 0]);
-    assert!(told(&plan, WarningKind::InTheAir).is_none());
+    assert!(warning(&plan, WarningKind::InTheAir).is_none());
 }
 
 /// A long loop of which a corner hangs far out lies on metal for most of its length; the corner does not.
@@ -110,7 +110,7 @@ fn a_long_pass_that_hangs_somewhere_is_in_the_air() {
     };
     for degrees in [0.0, 23.0] {
         let plan = with_tongue(40.0, degrees);
-        let air = told(&plan, WarningKind::InTheAir).unwrap();
+        let air = warning(&plan, WarningKind::InTheAir).unwrap();
         assert_eq!((air.layers.clone(), plan.summary.forbidden.clone()), (vec![(4, 4)], vec![air.sentence()]));
         assert!(air.total > 60.0 && air.total < 300.0, "{}: the tongue is 40 mm long and 30 mm wide", air.total);
         let place = DVec2::from_angle(-f64::to_radians(degrees)).rotate(air.largest.place);
@@ -134,6 +134,6 @@ fn a_layer_that_hangs_is_not_left_out() {
     let foot = [(0.0, 12.0), (0.0, 12.0), (0.0, 6.0)];
     let aside = [(40.0, 52.0), (0.0, 12.0), (6.0, 8.0)];
     let plan = planned(&blocks(&[foot, aside], 0.0), "loop");
-    assert!(told(&plan, WarningKind::HangingIsland).is_none());
+    assert!(warning(&plan, WarningKind::HangingIsland).is_none());
     assert_eq!(plan.summary.forbidden.len(), 1);
 }

@@ -54,7 +54,7 @@ fn planned(mesh: &Mesh, surface: Surface) -> Plan {
 }
 
 #[test]
-fn what_an_open_surface_stands_for_is_asked() {
+fn what_an_open_surface_means_is_asked() {
     for angle in [0.0, 0.4, 2.0] {
         for skin in [tube(0.0, TAU), tube(0.0, 4.0), cuboid([0.0; 3], [40.0, 30.0, 20.0])[2..].to_vec()] {
             match plan::plan("part", &turned(&skin, angle), &profile(None), &Task::new()) {

@@ -116,7 +116,7 @@ fn a_square_has_the_volume_of_its_prisms() {
     }
 }
 
-/// GLB as its specification tells it: two chunks, and accessors that fit their views.
+/// GLB as its specification has it: two chunks, and accessors that fit their views.
 #[test]
 fn glb_holds_the_same_bodies() {
     let profile = profile_by("cmt-al2319-kuka", "compound");

@@ -90,7 +90,7 @@ fn planning_can_be_watched_and_stopped() {
     let (mesh, mut profile) = (ball(), Profile::built_in("plasma-304-cnc").unwrap());
     profile.layers.height = 0.5;
     profile.layers.level = false;
-    // Loops take more time for so many layers than is waited for here.
+    // Loops of that many layers take longer than the test waits.
     profile.fill.strategy = StrategyName::Compound;
     check("plan", Stage::Plan, |task| match plan::plan("ball", &mesh, &profile, task) {
         Ok(plan) => {

@@ -80,7 +80,7 @@ fn leaning(follow_wall: f64, travel_angle: f64) -> Profile {
     profile
 }
 
-/// The wire points down the wall of a cone, wherever the cone stands and however it leans.
+/// The wire points down the wall of a cone, wherever the cone is and however it leans.
 #[test]
 fn the_wire_points_down_the_wall() {
     for (centre, slope) in [(DVec2::ZERO, 15.0_f64), (DVec2::new(-61.0, 17.0), 25.0), (DVec2::new(9.0, 90.0), -20.0)] {

@@ -103,7 +103,7 @@ fn plans_come_back_from_3mf() {
     }
 }
 
-/// Length, time and waits as they stand in the files, counted from the text alone.
+/// Length, time and waits as they are in the files, counted from the text alone.
 #[test]
 fn lengths_times_and_waits_are_the_plans() {
     for profile in [with_ends(profile_by("cmt-al2319-kuka", "hybrid")), profile_by("plasma-304-cnc", "zigzag")] {

@@ -21,7 +21,7 @@ fn job() -> Vec<Layer> {
     vec![Layer { index: 0, z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() }]
 }
 
-/// The numbers behind every place where a text stands, as many as there are to the end of the brackets.
+/// The numbers after every occurrence of a text, as many as there are to the end of the brackets.
 fn numbers_behind(files: &BTreeMap<String, String>, mark: &str, count: usize) -> Vec<Vec<f64>> {
     let number = |t: &str| t.trim().trim_start_matches(|c: char| c.is_alphabetic() || c == '=' || c == ' ').to_owned();
     let mut found = Vec::new();
@@ -125,7 +125,7 @@ fn the_angle_of_reach_is_what_the_program_has() {
 }
 
 #[test]
-fn the_table_stands_in_every_pose_or_the_post_refuses() {
+fn the_table_is_in_every_pose_or_the_dialect_refuses() {
     let mut profile = with_all_dialects("cmt-steel-robots");
     profile.program.table_angle = Some(-35.0);
     let krl = dialect::write("krl", &job(), &profile.job("part")).unwrap();

@@ -1,4 +1,4 @@
-//! Joint trajectories: the arm stands where the program wants the torch, at times that run on.
+//! Joint trajectories: the arm is where the program wants the torch, at times that run on.
 
 use crate::common;
 
@@ -6,7 +6,7 @@ use beadwright::robot::{self, Cell, Trajectory};
 use common::{planned, profile};
 
 #[test]
-fn the_arm_stands_where_the_torch_is() {
+fn the_arm_is_where_the_torch_is() {
     for (cell, part) in [("kuka-kr20-r1810", "cross"), ("abb-irb1410", "star")] {
         let (cell, profile) = (Cell::built_in(cell).unwrap(), profile("cmt-al2319-kuka"));
         let plan = planned(part, &profile);
@@ -38,8 +38,8 @@ fn the_arm_stands_where_the_torch_is() {
         assert_eq!(points.len(), rows.len());
         for (point, row) in points.iter().zip(&rows) {
             let time = &point["time_from_start"];
-            let told = time["sec"].as_f64().unwrap() + 1e-9 * time["nanosec"].as_f64().unwrap();
-            assert!((told - row[0]).abs() < 1e-6);
+            let seconds = time["sec"].as_f64().unwrap() + 1e-9 * time["nanosec"].as_f64().unwrap();
+            assert!((seconds - row[0]).abs() < 1e-6);
             for (angle, degrees) in point["positions"].as_array().unwrap().iter().zip(&row[8..]) {
                 assert!((angle.as_f64().unwrap().to_degrees() - degrees).abs() < 1e-5);
             }

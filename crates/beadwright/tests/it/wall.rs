@@ -110,7 +110,7 @@ proptest! {
         prop_assert!((wall(3.0 * width, 3.0 * bead.height()).rise() - 3.0 * bead.rise()).abs() < 1e-12 * bead.rise());
         let again = WallBead::for_rise(width, bead.rise()).unwrap();
         prop_assert!((again.height() - bead.height()).abs() < 1e-10 * bead.height());
-        // The metal of a bead and the thickness of its wall tell the bead.
+        // The metal of a bead and the thickness of its wall determine the bead.
         let again = WallBead::for_wall(bead.thickness(), bead.area()).unwrap();
         prop_assert!((again.width() / width - 1.0).abs() < 1e-9 && (again.height() / bead.height() - 1.0).abs() < 1e-9);
         prop_assert!((again.rise() * bead.thickness() / bead.area() - 1.0).abs() < 1e-9);

@@ -30,8 +30,8 @@ pub(super) fn absolute(page: &mut Sheet, swept: &[(Plate, Vec<At>)], printer: &P
         let [before, after] = plate.printed.regions?;
         let turned = Turned::new(plate, 0.0, printer);
         let ours = [turned.sub_regions(), turned.merged_regions()];
-        let told = |[before, after]: [usize; 2]| format!("{before} become {after}");
-        Some(plain([plate.name.to_owned(), told([before, after]), told(ours)]))
+        let text = |[before, after]: [usize; 2]| format!("{before} become {after}");
+        Some(plain([plate.name.to_owned(), text([before, after]), text(ours)]))
     });
     page.table(&["sub-regions at 0°, merged (3.2)", "the paper", "ours"], &rows.collect::<Vec<_>>());
 }

@@ -116,7 +116,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
         let found = goals_of(&plate, &sweep);
         lines.extend(summary(&plate, &sweep, &found));
         rows.extend(found.iter().map(|goal| goal.row(&plate)));
-        goals.extend(found.iter().map(|goal| goal.told(&plate)));
+        goals.extend(found.iter().map(|goal| goal.shown(&plate)));
         swept.push((plate, sweep));
     }
     page.heading("Reached and not reached").table(&GOAL_HEAD, &rows);
@@ -128,7 +128,7 @@ pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     let ants = beside::colony(&mut page, &printer);
     beside::corners(&mut page, &swept);
     for (plate, sweep) in &swept {
-        tell(&mut page, plate, sweep, &printer);
+        describe(&mut page, plate, sweep, &printer);
     }
     let pictures = ants.into_iter().map(|svg| ("b-ants.svg", svg)).collect();
     Ok(Reproduced { page, goals, pictures, lines, files: Vec::new() })
@@ -152,7 +152,7 @@ impl Goal {
     }
 
     /// A saving of the paper is reached on the mean of all rotations; a loss is judged at each of them.
-    fn told(&self, plate: &Plate) -> goal::Goal {
+    fn shown(&self, plate: &Plate) -> goal::Goal {
         let [mean, worst, _] = self.ours.cells();
         let what = format!("{}: {}, saved on the mean of 36 rotations", plate.name, self.what);
         let (paper, judged) = if self.goal < 0.0 {
@@ -252,7 +252,7 @@ fn shares(sweep: &[At]) -> impl Iterator<Item = (&'static Plan, Spread)> + '_ {
 }
 
 /// The section of a plate.
-fn tell(page: &mut Sheet, plate: &Plate, sweep: &[At], printer: &Printer) {
+fn describe(page: &mut Sheet, plate: &Plate, sweep: &[At], printer: &Printer) {
     let plain = |text: String| (text, false);
     page.heading(plate.name);
 

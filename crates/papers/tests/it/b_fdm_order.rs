@@ -24,8 +24,8 @@ fn the_plate_of_twelve_sub_regions_has_twelve() {
 #[test]
 fn plates_save_what_the_page_says() {
     let printer = Printer::new().unwrap();
-    let told = [(39.0, 60.0, [5.0, 9.5]), (44.0, 48.0, [1.9, 10.0]), (40.5, 55.5, [2.7, 9.0])];
-    for (plate, (columns, file, times)) in han::plates().iter().zip(told) {
+    let stated = [(39.0, 60.0, [5.0, 9.5]), (44.0, 48.0, [1.9, 10.0]), (40.5, 55.5, [2.7, 9.0])];
+    for (plate, (columns, file, times)) in han::plates().iter().zip(stated) {
         for (degrees, time) in [(0.0, times[0]), (90.0, times[0] - 0.5), (45.0, times[1]), (140.0, times[1] - 0.5)] {
             let turned = Turned::new(plate, degrees, &printer);
             let [plain, in_columns, ours] = [han::PLAIN, han::COLUMNS, han::OURS].map(|plan| turned.outcome(&plan));
@@ -123,9 +123,9 @@ fn whole_plans_take_the_time_of_the_page() {
             profile.fill.raster_turn = turn;
             plan::plan("plate", &mesh, &profile, &Task::new()).unwrap().summary.metrics.total_time_s
         };
-        let told = 2.0 * Turned::new(&twelve, degrees, &printer).outcome(&han::OURS).seconds;
+        let stated = 2.0 * Turned::new(&twelve, degrees, &printer).outcome(&han::OURS).seconds;
         let (best, fixed) = (seconds(RasterTurn::Best), seconds(RasterTurn::Alternate));
-        assert!((best / told - 1.0).abs() < 0.01, "{degrees}°: {best} s, on the page {told} s");
+        assert!((best / stated - 1.0).abs() < 0.01, "{degrees}°: {best} s, on the page {stated} s");
         assert!(best <= 1.005 * fixed, "{degrees}°: {best} s for {fixed} s");
     }
 }
@@ -149,7 +149,7 @@ fn plates_are_of_the_kinds_that_the_paper_prints() {
     for plate in han::plates() {
         let saved = |[before, after]: [f64; 2]| 100.0 * (1.0 - after / before);
         let table = [saved(plate.printed.travel), saved(plate.printed.seconds)];
-        assert!(table.iter().zip(plate.paper).all(|(table, told)| (table - told).abs() < 0.06), "{table:?}");
+        assert!(table.iter().zip(plate.paper).all(|(table, stated)| (table - stated).abs() < 0.06), "{table:?}");
         let turned = Turned::new(&plate, 0.0, &printer);
         let ours = [turned.sub_regions(), turned.merged_regions()];
         println!("{}: {ours:?}, the paper {:?}", plate.name, plate.printed.regions);
@@ -196,8 +196,8 @@ fn the_area_at_turns_is_that_of_the_corners_of_a_path() {
             .flat_map(|path| path.windows(3).map(|w| (w[0] - w[1]).angle_to(w[2] - w[1]).abs()))
             .map(|theta| r * r * (1.0 / (theta / 2.0).tan() + theta / 2.0 - std::f64::consts::FRAC_PI_2))
             .sum();
-        let told = angle::corner_area(&core, angle, &settings);
-        println!("{degrees}°: {corners} {told}");
-        assert!((corners / told - 1.0).abs() < 0.02, "{degrees}°: {corners} mm² by corners, {told} mm² by edges");
+        let edges = angle::corner_area(&core, angle, &settings);
+        println!("{degrees}°: {corners} {edges}");
+        assert!((corners / edges - 1.0).abs() < 0.02, "{degrees}°: {corners} mm² by corners, {edges} mm² by edges");
     }
 }

@@ -150,7 +150,7 @@ impl FromStr for Plane {
     }
 }
 
-/// Stands between the values of a list.
+/// Separates the values of a list.
 const BETWEEN: &str = ":";
 /// Where layers are cut open if nothing is written, °: the angle 0 is that of x.
 const SEAM: f64 = 180.0;

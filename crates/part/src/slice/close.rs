@@ -15,12 +15,12 @@ struct End {
     last: bool,
 }
 
-/// Joins open chains into rings, and returns what stays open. `tell` is called with every gap: a place and its width, mm.
+/// Joins open chains into rings, and returns what stays open. `report` is called with every gap: a place and its width, mm.
 pub(super) fn close(
     chains: Vec<Vec<DVec2>>,
     gap: f64,
     rings: &mut Vec<Ring>,
-    mut tell: impl FnMut(DVec2, f64),
+    mut report: impl FnMut(DVec2, f64),
 ) -> Vec<Vec<DVec2>> {
     let mut partner: Vec<[Option<End>; 2]> = vec![[None; 2]; chains.len()];
     for (distance, a, b) in candidate_pairs(&chains, gap) {
@@ -29,7 +29,7 @@ pub(super) fn close(
             partner[a.chain][usize::from(a.last)] = Some(b);
             partner[b.chain][usize::from(b.last)] = Some(a);
             if distance > 1e-3 {
-                tell(point(&chains, a), distance);
+                report(point(&chains, a), distance);
             }
         }
     }

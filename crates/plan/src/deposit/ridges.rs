@@ -163,13 +163,13 @@ impl Ridges {
         let pairs = self.crests[..self.count].windows(2);
         let stripes =
             pairs.flat_map(|pair| between(pair[0], pair[1], self.scale).into_iter().flatten().map(move |s| (pair, s)));
-        let tell = |(pair, stripe): (&[f64], Stripe)| {
+        let add = |(pair, stripe): (&[f64], Stripe)| {
             // No third bead reaches in between.
             let bead = |crest: f64, place: f64| (1.0 - (place - crest).powi(2)).max(0.0);
             let height = |place: f64| (bead(pair[0], place) + bead(pair[1], place)) * self.height;
             lines.meet(&stripe, |row, points, at, place| found(stripe.overfilled, row, points, at, height(place)));
         };
-        if step < 0.0 { stripes.rev().for_each(tell) } else { stripes.for_each(tell) }
+        if step < 0.0 { stripes.rev().for_each(add) } else { stripes.for_each(add) }
     }
 
     /// Gives the mean height, mm, over a stretch of `length` mm across the beads from where its middle lies.

@@ -1,4 +1,4 @@
-//! From a part to its preform: the part and what is milled off again.
+//! From a part to its preform: the part plus the stock that is milled off afterwards.
 //!
 //! | rule | file |
 //! | --- | --- |
@@ -93,7 +93,7 @@ impl PreformSettings {
     }
 }
 
-/// A part with what is milled off again, in steps of one height.
+/// A part plus the stock that is milled off afterwards, in steps of one height.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preform {
     /// The steps, the lowest first; it stands on the plate.

@@ -17,7 +17,7 @@ pub enum PlateIs {
 }
 
 section! {
-    /// How a part becomes its preform: the part and what is milled off again; every key has a default.
+    /// How a part becomes its preform: the part plus the stock that is milled off afterwards; every key has a default.
     PreformSection "preform" {
         /// Stock on faces that look sideways, mm; default 1.5.
         side: f64 = 1.5, 0.0, 50.0, "mm", "thicker stock costs more than a second setup";

@@ -39,7 +39,7 @@ pub struct WeldSettings {
     /// How long the torch stands still at the end of a pass after its crater is filled, s; by default the time for arc end, gas
     /// postflow and drawing the wire back.
     pub arc_end_time: Option<f64>,
-    /// Height of what stands next to the part before its first pass, mm; the travel to that pass leads over it.
+    /// Height of what is built next to the part before its first pass, mm; the travel to that pass leads over it.
     pub standing: f64,
     /// How the layers of each body lie in space; at least one.
     pub charts: Vec<Chart>,

@@ -72,7 +72,7 @@ pub struct Way {
 /// where the new body's first pass lies straight below.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transfer {
-    /// Ends of its legs, and how the torch stands there.
+    /// Ends of its legs, and the torch's attitude there.
     pub legs: Vec<At>,
     /// Its length, mm.
     pub length: f64,

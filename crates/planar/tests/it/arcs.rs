@@ -30,7 +30,7 @@ fn a_circle_becomes_three_arcs_of_its_radius() {
         assert_eq!(pieces.len(), 3, "{pieces:?}");
         assert_eq!(pieces.last().unwrap().end, count);
         for arc in pieces.iter().map(|p| p.arc.unwrap()) {
-            // Chords lie inside the circle; a short arc tells its radius less well than its place.
+            // Chords lie inside the circle; a short arc determines its radius less well than its place.
             let off = (arc.via.length() - 20.0).abs();
             assert!(off < 0.013 && (arc.radius - 20.0).abs() < 0.02 / (1.0 - (arc.sweep / 2.0).cos()), "{arc:?}");
             assert_eq!(arc.sweep > 0.0, turn > 0.0);

@@ -62,7 +62,7 @@ fn a_ring_is_a_loop_of_its_thickness() {
 }
 
 #[test]
-fn a_wedge_tells_its_thickness() {
+fn a_wedge_shows_its_thickness() {
     // Thickness 1 at x = 0 and 5 at x = 40.
     let found = of(&[(0.0, -0.5), (40.0, -2.5), (40.0, 2.5), (0.0, 0.5)], 0.4);
     assert_eq!(found.len(), 1);
@@ -78,7 +78,7 @@ fn a_wedge_tells_its_thickness() {
 proptest! {
     /// Every rung stands on the boundary and lies inside; whatever the shape, nothing fails.
     #[test]
-    fn rungs_stand_on_the_boundary(radii in prop::collection::vec(3.0..20.0_f64, 5..40)) {
+    fn rungs_end_on_the_boundary(radii in prop::collection::vec(3.0..20.0_f64, 5..40)) {
         let n = radii.len() as f64;
         let points = radii.iter().enumerate().map(|(k, r)| DVec2::from_angle(k as f64 / n * std::f64::consts::TAU) * *r);
         let polygon = Polygon::simple(Ring::new(points.collect()));

@@ -240,7 +240,8 @@ fn ring(points: impl IntoIterator<Item = (f64, f64)>) -> Ring {
 
 /// An edge used up by one cut alone, beside edges that turn back sharply, stayed and kept what lies too near the outline.
 #[test]
-fn case_1901_a_barb_in_a_corner_leaves_no_spike() {
+fn a_barb_in_a_corner_leaves_no_spike() {
+    // Case 1901.
     let barb = [(0.0, 0.0), (0.0, 0.1), (-0.02, 0.05), (-0.02, 0.15)];
     let around = [(10.0, 0.15), (10.0, 10.0), (-10.0, 10.0), (-10.0, 0.0)];
     let outline = Region::from_rings(&[ring(barb.into_iter().chain(around))], FillRule::NonZero);
@@ -258,7 +259,8 @@ fn case_1901_a_barb_in_a_corner_leaves_no_spike() {
 
 /// Round joins of less than their tolerance became tips of any length.
 #[test]
-fn case_1902_tiny_round_offsets_reach_no_farther_than_their_tolerance() {
+fn tiny_round_offsets_reach_no_farther_than_their_tolerance() {
+    // Case 1902.
     let needle = Region::from_rings(&[ring([(0.0, 0.0), (10.0, 0.0), (0.0, 0.1)])], FillRule::NonZero);
     for distance in [0.0005, 0.001, 0.002, 0.005, 0.02] {
         let grown = needle.offset(distance, Join::ROUND);

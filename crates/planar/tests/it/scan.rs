@@ -103,7 +103,7 @@ proptest! {
         for (i, span) in scan.spans().iter().enumerate() {
             let (left, right) = (scan.end(i, End::Left), scan.end(i, End::Right));
             prop_assert!(left.y == right.y && left.x <= right.x && scan.length(i) == right.x - left.x);
-            // First and last line stand half a micrometre off the edge.
+            // First and last line lie half a micrometre off the edge.
             prop_assert!((left.y - first - span.line as f64 * step).abs() < 1.1e-3, "line {} at {}", span.line, left.y);
             if let Some(next) = scan.spans().get(i + 1) {
                 let same = span.line == next.line && right.x <= scan.end(i + 1, End::Left).x;

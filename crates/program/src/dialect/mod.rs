@@ -5,8 +5,8 @@
 //!
 //! | file | what it is |
 //! | --- | --- |
-//! | `mod.rs` | the row [`DIALECT`](krl::DIALECT), and how the [section](Section) begins a writer |
-//! | `section.rs` | the keys of the profile, with their limits |
+//! | `mod.rs` | the row [`DIALECT`](krl::DIALECT) |
+//! | `section.rs` | the keys of the profile, with their limits, and how the [section](Section) begins a writer |
 //! | `write.rs` | the syntax, from which `writing::frame` makes a [writer](writing::Writer) |
 //! | `read.rs` | the reader |
 //!
@@ -41,6 +41,8 @@ pub struct Dialect {
     pub name: &'static str,
     /// The language as people write it; dialects of one language are read in the same way.
     pub language: &'static str,
+    /// Extensions of the files in which a main program's modules may be, such as `src`; none where one file holds everything.
+    pub module_extensions: &'static [&'static str],
     /// Whether it writes the linear axis of the robot.
     pub linear_axis: bool,
     /// Whether it writes the axes that turn the part.
@@ -210,6 +212,20 @@ impl Sections {
 /// The names of the dialects.
 pub fn names() -> Vec<&'static str> {
     ALL.iter().map(|dialect| dialect.name).collect()
+}
+
+/// Whether a file may be the module `name` of a program, whatever its case and the language; both without their folder.
+///
+/// ```
+/// use bead_program::dialect;
+///
+/// assert!(dialect::may_be_module("PART_L001.SRC", "part_l001"));
+/// assert!(!dialect::may_be_module("part_l001.txt", "part_l001"));
+/// ```
+pub fn may_be_module(file: &str, name: &str) -> bool {
+    let [file, name] = [file, name].map(str::to_ascii_lowercase);
+    let known = |extension: &str| ALL.iter().any(|dialect| dialect.module_extensions.contains(&extension));
+    file.strip_prefix(&name).is_some_and(|rest| rest.is_empty() || rest.strip_prefix('.').is_some_and(known))
 }
 
 /// The dialect with this name.

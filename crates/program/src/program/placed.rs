@@ -83,7 +83,7 @@ impl Placing<'_> {
         Attitude { layer: frame(&self.sheet.at(at)), ..attitude }
     }
 
-    /// Turns the torch to how it stands at a place.
+    /// Turns the torch to its attitude at a place.
     fn turn(&mut self, p: DVec3) {
         self.out.push(Instruction::Turn { attitude: self.turned(self.start, p) });
     }

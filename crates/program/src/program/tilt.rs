@@ -159,7 +159,7 @@ mod tests {
         ProgramSettings { follow_wall, max_work_angle, travel_angle, ..ProgramSettings::default() }
     }
 
-    /// On a cone whose wall leans by 20° the torch leans by 20° outward or inward, wherever the cone stands.
+    /// On a cone whose wall leans by 20° the torch leans by 20° outward or inward, wherever the cone is.
     #[test]
     fn the_torch_leans_with_a_cone() {
         let centre = DVec2::new(13.0, -41.0);

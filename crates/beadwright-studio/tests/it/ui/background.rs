@@ -26,21 +26,21 @@ fn last(planner: &mut Planner) -> Event {
 }
 
 #[test]
-fn a_fault_in_the_planner_is_told_and_it_plans_again() {
+fn a_fault_in_the_planner_is_reported_and_it_plans_again() {
     // The bell is rung in the midst of the work.
     let broken = AtomicBool::new(false);
     let bell = move |_| assert!(broken.swap(true, Ordering::Relaxed), "the bell is cracked");
     let mut planner = Planner::new(bell);
     let project = Project { source: Some(Source::Example("cross".to_owned())), ..Project::default() };
     planner.plan(&project, 0);
-    let Event::Failed(Failure::Sentence(text)) = last(&mut planner) else { panic!("the fault is not told") };
+    let Event::Failed(Failure::Sentence(text)) = last(&mut planner) else { panic!("the fault is not reported") };
     assert!(text.contains("the bell is cracked") && text.contains("report") && text.ends_with('.'), "{text}");
     planner.plan(&project, 0);
     assert!(matches!(last(&mut planner), Event::Checked(..)));
 }
 
 #[test]
-fn a_fault_in_a_job_is_told() {
+fn a_fault_in_a_job_is_reported() {
     let ctx = Context::default();
     let mut job = Some(Job::<u32>::start(&ctx, || panic!("no {}", "luck")));
     let start = Instant::now();

@@ -51,14 +51,14 @@ fn a_typed_value_changes_the_plan_and_is_undone_by_keys() {
 }
 
 #[test]
-fn what_cannot_be_is_told_at_its_field_and_changes_nothing() {
+fn an_impossible_value_is_refused_at_its_field_and_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
     let (project, plan) = (harness.state().project().clone(), planned(&harness));
     search(&mut harness, "layers.height");
     type_number(&mut harness, "height", "1000");
-    let told = |harness: &Window| harness.query_by_label_contains("it must lie between 0.01 and 50 mm").is_some();
-    assert!(told(&harness), "nothing is said about 1000 mm");
+    let refused = |harness: &Window| harness.query_by_label_contains("it must lie between 0.01 and 50 mm").is_some();
+    assert!(refused(&harness), "nothing is said about 1000 mm");
     wait(&mut harness);
     assert_eq!((harness.state().project(), planned(&harness)), (&project, plan));
     // A value that only its neighbours forbid.
@@ -67,7 +67,7 @@ fn what_cannot_be_is_told_at_its_field_and_changes_nothing() {
     assert_eq!(harness.state().project(), &project);
     type_number(&mut harness, "height", "2.5");
     wait(&mut harness);
-    assert!(!told(&harness) && planned(&harness).0 == 8);
+    assert!(!refused(&harness) && planned(&harness).0 == 8);
 }
 
 #[test]

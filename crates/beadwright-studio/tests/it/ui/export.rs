@@ -115,8 +115,8 @@ fn papers_are_written_one_by_one() {
     assert!(!report.contains("CROSS.src") && String::from_utf8_lossy(&all["report.html"]).contains("CROSS.src"));
     // A dialect that the profile lacks is refused with a sentence.
     harness.state_mut().export(&Export::Program("rapid".to_owned()), &folder.path().join("none"));
-    let told = harness.state().messages().last().unwrap();
-    assert!(told.error && told.text.contains("rapid") && told.text.ends_with('.'), "{}", told.text);
+    let message = harness.state().messages().last().unwrap();
+    assert!(message.error && message.text.contains("rapid") && message.text.ends_with('.'), "{}", message.text);
 }
 
 #[test]
@@ -128,8 +128,8 @@ fn programs_that_nobody_should_start_are_not_exported() {
     let out = folder.path().join("out");
     for export in [Export::All, Export::Program("krl".to_owned())] {
         harness.state_mut().export(&export, &out);
-        let told = harness.state().messages().last().unwrap();
-        assert!(told.error && told.text.contains("travel.clearance = 0") && !out.exists(), "{}", told.text);
+        let message = harness.state().messages().last().unwrap();
+        assert!(message.error && message.text.contains("travel.clearance = 0") && !out.exists(), "{}", message.text);
     }
     // The plan itself may be looked at.
     harness.state_mut().export(&Export::File(PLAN), &out);
@@ -144,7 +144,7 @@ fn a_picture_is_written() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = crate::window::example(folder.path(), "cross");
     harness.run_steps(2);
-    // The name tells nothing; the content is a PNG all the same.
+    // The name has no extension; the content is a PNG all the same.
     let path = folder.path().join("picture");
     harness.state_mut().save_picture(&path);
     assert!(!harness.state().messages().last().unwrap().error);

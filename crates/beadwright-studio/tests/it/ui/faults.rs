@@ -149,7 +149,7 @@ fn the_number_of_findings_does_not_move_the_tabs() {
 }
 
 #[test]
-fn findings_are_told_beside_done_and_grouped() {
+fn findings_are_counted_beside_done_and_grouped() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = studio(folder.path());
     harness.state_mut().open_example("cross");

@@ -153,8 +153,8 @@ fn what_goes_wrong_again_is_said_once() {
         harness.state_mut().set_value("layers.height", height);
         harness.run_steps(2);
     }
-    let told: Vec<_> = harness.state().messages().iter().map(|message| &message.text).collect();
-    assert!(told.len() == 1 && told[0].starts_with("The project cannot be autosaved"), "{told:?}");
+    let texts: Vec<_> = harness.state().messages().iter().map(|message| &message.text).collect();
+    assert!(texts.len() == 1 && texts[0].starts_with("The project cannot be autosaved"), "{texts:?}");
 }
 
 #[test]

@@ -35,7 +35,7 @@ fn a_bead_clicked_in_3d_is_the_one_of_the_layer_view_and_back() {
     ];
     slide(&mut harness, "Last layer", top as f64 + 1.0);
     assert!(figures.iter().all(|figure| sees(&harness, figure)), "{figures:?}");
-    // The layer view goes to its layer, and tells the same of it.
+    // The layer view goes to its layer, and shows the same values.
     press(&mut harness, Key::F3);
     assert_eq!((harness.state_mut().view().last, harness.state_mut().view().chosen), (4, Some(chosen)));
     assert!(figures.iter().all(|figure| sees(&harness, figure)), "{figures:?}");
@@ -93,7 +93,7 @@ fn the_section_is_chosen_moved_and_turned() {
 }
 
 #[test]
-fn the_arm_stands_at_the_chosen_bead_and_tells_its_joints() {
+fn the_arm_reaches_the_chosen_bead_and_shows_its_joints() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
     harness.state_mut().view().chosen = Some((3, 0, 0));

@@ -97,7 +97,7 @@ fn the_ring_turns_the_part_about_its_middle() {
     assert!(from.distance(seen(&camera, rect, on_ring(-135.0))) < 0.01);
     let to = seen(&camera, rect, on_ring(-105.0));
     pull(&mut harness, from, to);
-    assert!(sees(&harness, "Turn about z +30.0°"), "the figure is not told");
+    assert!(sees(&harness, "Turn about z +30.0°"), "the figure is not shown");
     assert_eq!(foot(&harness), middle, "it moves before the handle is let go");
     button(&mut harness, to, false);
     wait(&mut harness);

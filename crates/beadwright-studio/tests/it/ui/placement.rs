@@ -1,4 +1,4 @@
-//! Where the part stands.
+//! Where the part is placed.
 
 use crate::window::{Window, bounds, click, click_at, crosses, has_adapter, planned, sees, studio, type_number, wait};
 use eframe::egui::Key;

@@ -28,7 +28,7 @@ fn the_torch_runs_to_the_end_in_the_time_of_the_metrics() {
         harness.run_steps(1);
         let now = harness.state_mut().view().clone();
         assert!(now.torch.is_some());
-        // At the very end it stands, while the gas still flows.
+        // At the very end it is at rest, while the gas still flows.
         assert!(now.torch != before.torch || !now.playing, "the torch stands still");
         let passed = now.seconds - before.seconds;
         assert!(passed <= rate * STEP * 1.001 && (passed >= rate * STEP * 0.999 || !now.playing), "{passed} s");

@@ -32,7 +32,7 @@ fn open(harness: &mut Window, path: &Path) {
 }
 
 #[test]
-fn the_figures_of_a_scan_are_told_and_taken_away() {
+fn the_figures_of_a_scan_are_shown_and_taken_away() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(&folder.path().join("store"), "cross");
     assert!(!sees(&harness, "Close the scan"));

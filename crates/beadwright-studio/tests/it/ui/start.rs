@@ -46,7 +46,7 @@ fn the_robot_cell_follows_the_process_until_one_is_chosen() {
     let mut harness = studio(folder.path());
     let choose = |harness: &mut Window, list: &str, entry: &str| {
         open_list(harness, list);
-        // The name chosen now stands in the list, too.
+        // The chosen name is now in the list, too.
         harness.query_all_by_label(entry).last().unwrap().click();
         harness.run_steps(3);
     };

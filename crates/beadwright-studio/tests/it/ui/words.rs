@@ -133,9 +133,9 @@ fn every_word_is_explained(harness: &mut Window, least: usize, view: &str) {
             }
             harness.hover_at(pos);
             harness.run_steps(8);
-            let told = |harness: &Window, text: &str| harness.query_all_by_label_contains(text).next().is_some();
+            let shows = |harness: &Window, text: &str| harness.query_all_by_label_contains(text).next().is_some();
             assert!(
-                told(harness, hint) && told(harness, "More in the book"),
+                shows(harness, hint) && shows(harness, "More in the book"),
                 "{view}: {word} at {pos} is not explained"
             );
             harness.remove_cursor();
@@ -147,7 +147,7 @@ fn every_word_is_explained(harness: &mut Window, least: usize, view: &str) {
 }
 
 #[test]
-fn every_word_of_the_figures_is_explained_where_it_stands() {
+fn every_word_of_the_figures_is_explained_where_it_is() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
     every_word_is_explained(&mut harness, 4, "totals");

@@ -207,8 +207,8 @@ impl<'a> Reader<'a> {
 
     fn layer(self, index: usize, slab: Option<[f64; 2]>) -> Layer {
         let highest = self.passes.iter().flat_map(|pass| &pass.points).map(|p| p.z).fold(0.0, f64::max);
-        let told = slab.map(|[bottom, top]| [top, top - bottom]);
-        let [z, height] = self.own.or(told).unwrap_or([highest, self.height.unwrap_or(0.0)]);
+        let of_slab = slab.map(|[bottom, top]| [top, top - bottom]);
+        let [z, height] = self.own.or(of_slab).unwrap_or([highest, self.height.unwrap_or(0.0)]);
         let slice_area = self.islands.iter().map(Polygon::area).sum();
         let lit = Lit { before: false, after: self.goes_on };
         Layer { index, z, height, islands: self.islands, passes: self.passes, lit, slice_area, ..Layer::default() }

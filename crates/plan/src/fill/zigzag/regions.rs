@@ -113,7 +113,7 @@ impl<'a> Weave<'a> {
         self.regions[joint.lower].exit(entries[joint.lower]) == joint.side && entries[joint.upper] == joint.side
     }
 
-    /// The end by which each sub-region is entered, chosen so that many merge: single sub-regions, from the lowest up,
+    /// The end by which each sub-region is entered, chosen so that as many as possible merge: single sub-regions, from the lowest up,
     /// and then both sides of each joint are switched as long as more merge.
     fn choose_entries(&self) -> Vec<End> {
         let mut entries = vec![End::Left; self.regions.len()];

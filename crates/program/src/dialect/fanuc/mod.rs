@@ -12,6 +12,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "fanuc",
     language: "FANUC TP",
+    module_extensions: &["ls"],
     linear_axis: false,
     table: true,
     typical: read::typical,

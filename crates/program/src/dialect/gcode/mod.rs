@@ -18,6 +18,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "gcode",
     language: "G-code",
+    module_extensions: &[],
     linear_axis: false,
     table: false,
     typical: read::typical,

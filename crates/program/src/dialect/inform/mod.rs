@@ -12,6 +12,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "inform",
     language: "INFORM",
+    module_extensions: &["jbi"],
     linear_axis: false,
     table: false,
     typical: read::typical,

@@ -15,5 +15,12 @@ pub use section::{Krl, KrlMotion};
 use super::Dialect;
 
 /// The row in the table of dialects.
-pub const DIALECT: Dialect =
-    Dialect { name: "krl", language: "KRL", linear_axis: true, table: true, typical: read::typical, read: read::read };
+pub const DIALECT: Dialect = Dialect {
+    name: "krl",
+    language: "KRL",
+    module_extensions: &["src", "sub"],
+    linear_axis: true,
+    table: true,
+    typical: read::typical,
+    read: read::read,
+};

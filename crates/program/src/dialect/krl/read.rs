@@ -76,11 +76,11 @@ struct ArcData {
     /// Weld speed, mm/s.
     speed: Option<f64>,
     /// Time for which the torch stands still while the arc starts or ends, s.
-    stands: f64,
+    pause: f64,
 }
 
 /// Times of an ArcTech data set for which the torch stands still, at the start and at the end of a seam.
-const STANDS: [&str; 5] = ["PreFlowTime", "StartTime", "CraterTime", "BurnBackTime", "PostflowTime"];
+const PAUSES: [&str; 5] = ["PreFlowTime", "StartTime", "CraterTime", "BurnBackTime", "PostflowTime"];
 
 /// Whether a line can occur only in KRL.
 pub(super) fn typical(line: &str) -> bool {
@@ -196,8 +196,8 @@ impl Reader<'_> {
         } else if is("stArcDat_T") {
             let value_of = |key: &str| value.split_once(key).and_then(|(_, v)| number_before(v));
             let speed = value_of("Velocity").map(|speed| speed * 1000.0);
-            let stands = STANDS.iter().filter_map(|key| value_of(key)).map(|time| time.max(0.0)).sum();
-            source.arc_data.insert(variable.to_ascii_uppercase(), ArcData { speed, stands });
+            let pause = PAUSES.iter().filter_map(|key| value_of(key)).map(|time| time.max(0.0)).sum();
+            source.arc_data.insert(variable.to_ascii_uppercase(), ArcData { speed, pause });
         } else if let Some(value) = words::number(value) {
             self.values.insert(variable.to_ascii_uppercase(), value);
         }
@@ -382,7 +382,7 @@ impl Reader<'_> {
         let data = flat.split([',', ')']).find_map(|d| self.sources[source].arc_data.get(d)).copied();
         self.weld_speed = data.and_then(|data| data.speed).or(self.weld_speed);
         if !flat.starts_with("TRIGGERWHEN") && !flat.contains("BEFOREMOVE") && !flat.contains("#ARCSWI") {
-            self.trace.dwell += data.map_or(0.0, |data| data.stands);
+            self.trace.dwell += data.map_or(0.0, |data| data.pause);
         }
         // An inline form holds its motion: the arc is switched at its end.
         let form = ["LIN", "PTP", "CIRC"].iter().find_map(|w| line.find(&format!(" {w} ")).map(|at| &line[at + 1..]));

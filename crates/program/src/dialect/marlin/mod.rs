@@ -11,6 +11,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "marlin",
     language: "G-code",
+    module_extensions: &[],
     linear_axis: false,
     table: false,
     // A printer's file is recognised as G-code.

@@ -114,7 +114,7 @@ impl OwnWriter {
         self.taken.insert(main.to_ascii_lowercase());
         if !self.taken.insert(file.to_ascii_lowercase()) {
             let reason = format!(
-                "layer {number} would be written into {file}, where another part of the program stands. Put {{{{ layer }}}} \
+                "layer {number} would be written into {file}, which already holds another part of the program. Put {{{{ layer }}}} \
                  into the name."
             );
             return Err(self.error(LAYER_FILE, reason));

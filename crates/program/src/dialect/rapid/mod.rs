@@ -16,6 +16,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "rapid",
     language: "RAPID",
+    module_extensions: &["mod"],
     linear_axis: true,
     table: true,
     typical: read::typical,

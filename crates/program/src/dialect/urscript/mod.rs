@@ -12,6 +12,7 @@ use super::Dialect;
 pub const DIALECT: Dialect = Dialect {
     name: "urscript",
     language: "URScript",
+    module_extensions: &[],
     linear_axis: false,
     table: false,
     typical: read::typical,
