@@ -48,7 +48,8 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
         Part::Mesh(_) if kept => {}
         Part::Mesh(import) if !profile.layers.bodies.is_empty() => {
             let mut named = Vec::new();
-            for k in 0..profile.layers.bodies.len() {
+            let unnamed = |k: &usize| profile.layers.bodies[*k].strategy.is_none();
+            for k in (0..profile.layers.bodies.len()).filter(unnamed).collect::<Vec<_>>() {
                 let own = profile.of_body(k).into_owned();
                 let body = &mut profile.layers.bodies[k];
                 if let Some((strategy, predict)) = of_solid(&body.of_mesh(&import.mesh), &own, task)? {

@@ -4,7 +4,7 @@
 use crate::common;
 
 use beadwright::layer::Layer;
-use beadwright::model::{Mesh, solid::Solid};
+use beadwright::model::{Import, Mesh, Part, RepairReport, solid::Solid};
 use beadwright::plan::{self, Plan, PlanError};
 use beadwright::planar::{Polygon, Ring};
 use beadwright::profile::{Body, Profile};
@@ -36,6 +36,18 @@ fn block(low: DVec3, high: DVec3) -> Solid {
     let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
     let outline = Polygon::simple(Ring::new(corners.map(|(x, y)| DVec2::new(x, y)).to_vec()));
     Solid::loft(&outline, &[low.z, high.z], |p, _| p)
+}
+
+fn imported(mesh: Mesh) -> Part {
+    Part::Mesh(Import {
+        mesh,
+        repair: RepairReport::default(),
+        format: "test",
+        units: None,
+        objects: Vec::new(),
+        notes: Vec::new(),
+        milled: None,
+    })
 }
 
 fn mesh_of(solids: &[Solid]) -> Mesh {
@@ -259,16 +271,7 @@ fn a_part_on_a_base_must_lie_on_it() {
     let part = |x: f64| mesh_of(&[block(DVec3::new(x - 20.0, -15.0, 25.0), DVec3::new(x + 20.0, 15.0, 37.0))]);
     let plan = |x: f64| {
         let mesh = part(x);
-        let import = beadwright::model::Import {
-            mesh: mesh.clone(),
-            repair: beadwright::model::RepairReport::default(),
-            format: "test",
-            units: None,
-            objects: Vec::new(),
-            notes: Vec::new(),
-            milled: None,
-        };
-        let model = beadwright::model::Part::Mesh(import);
+        let model = imported(mesh.clone());
         let choice = plan::choice::choose(&model, &profile("cmt-al2319-kuka"), true, &Task::new()).unwrap();
         let solid = beadwright::model::PartRef::from(&mesh).onto(&base);
         (plan::plan("part", solid, &choice.profile, &Task::new()).unwrap(), choice.profile)
@@ -336,4 +339,19 @@ fn two_bodies_of_one_name_are_refused() {
     let text = "[[body]]\nname = \"a\"\n\n[[body]]\nname = \"a\"\nwithin = [\"up=z,through=0/0/9\"]\n";
     let refused = Body::read(text).unwrap_err().to_string();
     assert!(refused.starts_with("line 4: another body is named \"a\""), "{refused}");
+}
+
+/// A blade of one bead is welded by `wall`, unless its body asks for something else.
+#[test]
+fn a_strategy_named_by_a_body_is_kept() {
+    let solid = block(DVec3::ZERO, DVec3::new(100.0, 7.0, 40.0));
+    let part = imported(mesh_of(&[solid]));
+    for (named, expected) in [("", "wall"), ("strategy = \"contour\"\n", "contour")] {
+        let text = format!(
+            "[[body]]\nname = \"low\"\nwithin = [\"up=-z,through=0/0/20\"]\n{named}\n[[body]]\nname = \"up\"\nchart = \"plane:up=z,through=0/0/20\"\n"
+        );
+        let chosen = plan::choice::choose(&part, &with_bodies(&text), false, &Task::new()).unwrap().profile;
+        let strategy = |k: usize| chosen.layers.bodies[k].strategy.map(|strategy| strategy.to_string());
+        assert_eq!((strategy(0).as_deref(), strategy(1).as_deref()), (Some(expected), Some("wall")));
+    }
 }

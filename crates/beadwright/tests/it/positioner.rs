@@ -99,22 +99,23 @@ fn same_path(case: &str, a: &[Weld], b: &[Weld]) {
 
 /// Parts with their positioners, and how far the wire may hang from plumb, °: where a normal passes close by the axis of the table,
 /// that would have to spin, and the pool leans a little instead.
-const CASES: [(&str, fn() -> Positioner, f64); 8] = [
-    ("hub", chuck, 0.05),
-    ("shaft", chuck, 0.05),
-    ("hub", || tilting(Turning::Follow), 0.05),
-    ("elbow", || tilting(Turning::Follow), 0.05),
-    ("elbow", || tilting(Turning::Index), 0.05),
-    ("y-tube", || tilting(Turning::Index), 0.05),
-    ("dome", || tilting(Turning::Follow), 5.0),
-    ("clad", || tilting(Turning::Follow), 5.0),
-];
+fn cases() -> [(&'static str, Positioner, f64); 8] {
+    [
+        ("hub", chuck(), 0.05),
+        ("shaft", chuck(), 0.05),
+        ("hub", tilting(Turning::Follow), 0.05),
+        ("elbow", tilting(Turning::Follow), 0.05),
+        ("elbow", tilting(Turning::Index), 0.05),
+        ("y-tube", tilting(Turning::Index), 0.05),
+        ("dome", tilting(Turning::Follow), 5.0),
+        ("clad", tilting(Turning::Follow), 5.0),
+    ]
+}
 
 #[test]
 fn the_wire_hangs_straight_down_on_the_planned_path() {
-    for (name, positioner, allowed) in CASES {
+    for (name, positioner, allowed) in cases() {
         let (layers, plain) = planned(name);
-        let positioner = positioner();
         let mut turned = plain.clone();
         turned.program.positioner = Some(positioner.clone());
         for post in ["krl", "rapid", "fanuc"] {
@@ -221,4 +222,32 @@ fn what_a_positioner_cannot_be_is_refused() {
         let refused = dialect::write(post, &layers, &profile.job("demo")).unwrap_err().to_string();
         assert!(refused.contains(key) && refused.contains("program.positioner"), "{refused}");
     }
+}
+
+/// `reach` follows the part as it turns, about the lines of the axes: the tool's tip is where the part has been turned to, and the wire
+/// hangs straight down all the way.
+#[test]
+fn a_robot_finds_the_part_where_the_positioner_holds_it() {
+    let (layers, mut profile) = planned("elbow");
+    let mut positioner = tilting(Turning::Follow);
+    let through = [DVec3::new(0.0, 20.0, -150.0), DVec3::new(30.0, -10.0, 0.0)];
+    positioner.axes.iter_mut().zip(through).for_each(|(axis, through)| axis.through = through.to_array());
+    profile.program.positioner = Some(positioner.clone());
+    let track = profile.track(&layers);
+    let (mut turned, mut last) = (0, None);
+    for stop in track.stops.iter().filter(|stop| stop.arc) {
+        let held = stop.attitude.held.unwrap();
+        // About the axis next to the part first.
+        let mut place = stop.at;
+        for k in [1, 0] {
+            let direction = DVec3::from(positioner.axes[k].direction);
+            place = about(direction, held.angles[k]) * (place - through[k]) + through[k];
+        }
+        let tool = stop.tool(0.0);
+        assert!(tool.position.distance(place) < 0.2, "{} {place}", tool.position);
+        assert!((tool.rotation * DVec3::Z).angle_between(-DVec3::Z).to_degrees() < 0.1);
+        turned += usize::from(last != Some(held.angles));
+        last = Some(held.angles);
+    }
+    assert!(turned >= 4, "each of the layers has a position of its own: {turned}");
 }
