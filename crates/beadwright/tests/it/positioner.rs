@@ -7,6 +7,7 @@ use crate::readers;
 use beadwright::dialect;
 use beadwright::example;
 use beadwright::layer::Layer;
+use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan;
 use beadwright::profile::{Body, Profile};
 use beadwright::program::{Positioner, PositionerAxis, Turning};
@@ -15,6 +16,7 @@ use common::{profile, with_all_dialects};
 use glam::{DMat3, DVec3};
 use readers::{Motion, Weld, distance};
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::sync::{Arc, Mutex};
 
 const FREE: [f64; 2] = [-1e5, 1e5];
@@ -250,4 +252,41 @@ fn a_robot_finds_the_part_where_the_positioner_holds_it() {
         last = Some(held.angles);
     }
     assert!(turned >= 4, "each of the layers has a position of its own: {turned}");
+}
+
+/// Rings that all run the same way turn the part on and on; a chuck that cannot is wound back between passes, above the part, and
+/// never passes its limits.
+#[test]
+fn a_chuck_is_wound_back_between_passes() {
+    let (_, mut profile) = planned("shaft");
+    let (radius, height) = (30.0, profile.layers.height);
+    profile.layers.bodies.clear();
+    profile.layers.chart = "cylinder:axis=z,radius=30".parse().unwrap();
+    let around = 1.05 * TAU * (radius + height / 2.0);
+    let ring = |k: usize| Pass {
+        kind: PassKind::Contour,
+        closed: false,
+        points: (0..=8).map(|i| DVec3::new(around * f64::from(i) / 8.0, 5.0 * k as f64, height)).collect(),
+        width: Along::Same(profile.bead.width),
+        pace: Along::Same(profile.process.deposition_speed),
+        wait: 0.0,
+    };
+    let layers = [Layer { z: height, height, passes: (0..6).map(ring).collect(), ..Layer::default() }];
+    let plain = read("krl", &layers, &profile).welds;
+    for limits in [FREE, [-400.0, 400.0]] {
+        let mut chuck = chuck();
+        chuck.axes[0].limits = limits;
+        profile.program.positioner = Some(chuck.clone());
+        for post in ["krl", "rapid", "fanuc"] {
+            let welds = read(post, &layers, &profile).welds;
+            same_path(post, &plain, &welds);
+            let angles = |weld: &Weld| weld.axes.iter().map(|axes| axes[0].unwrap()).collect::<Vec<_>>();
+            assert!(welds.iter().flat_map(angles).all(|angle| (limits[0]..=limits[1]).contains(&angle)), "{post}");
+            let jumps = |pair: &[Weld]| (angles(&pair[1])[0] - angles(&pair[0]).last().unwrap()).abs() > 180.0;
+            let wound = welds.windows(2).filter(|pair| jumps(pair)).count();
+            assert_eq!(wound > 0, limits != FREE, "{post}: wound back {wound} times");
+            let worst = welds.iter().map(|weld| off_plumb(weld, &chuck)).fold(0.0, f64::max);
+            assert!(worst <= 0.05, "{post}: {worst}°");
+        }
+    }
 }

@@ -194,7 +194,7 @@ impl Machine {
 
     /// A move of the joints to a place above the part.
     pub fn approach(&mut self, to: impl Into<Stand>) {
-        assert!(self.at.is_none() && self.weld.is_none(), "the joints move in the part");
+        assert!(!self.over && self.weld.is_none(), "the joints move in the part");
         self.arrive(to.into());
         self.over = true;
     }

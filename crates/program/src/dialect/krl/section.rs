@@ -159,7 +159,7 @@ impl Section for Krl {
 
     fn longest_pass(&self, program: &ProgramSettings) -> Option<usize> {
         // The longest lines that a move and its speed can have; arcs have two poses.
-        let axes = usize::from(program.linear_axis.is_some()) + usize::from(program.has_table());
+        let axes = usize::from(program.linear_axis.is_some()) + program.turning_axes();
         let a_move = if program.arcs { 180 + 44 * axes } else { 102 + 22 * axes };
         Some((self.max_megabytes * MEGABYTE) as usize / a_move)
     }
