@@ -40,7 +40,7 @@ fn a_part_that_hangs_over_is_planned_as_its_preform() {
     let refused = run(folder.path(), &["plan", "table.stl", "-o", "out"]);
     let why = String::from_utf8(refused.stderr).unwrap();
     assert_eq!(refused.status.code(), Some(3), "{why}");
-    assert!(why.contains("--preform plans the part with") && why.contains("kg more to weld"), "{why}");
+    assert!(why.contains("--preform plans the part plus the stock") && why.contains("kg more to weld"), "{why}");
     assert!(folder.path().join("out/refused.html").exists());
     let planned = run(folder.path(), &["plan", "table.stl", "--preform", "-o", "out"]);
     let reported = String::from_utf8(planned.stderr).unwrap();

@@ -374,9 +374,12 @@ impl Subject<'_> {
         self.passes().filter(|(_, _, pass)| pass.kind != PassKind::Spot)
     }
 
-    /// Index of a layer in its body.
+    /// Index of a layer in its body; the first body begins with the plan, even where only some of its layers are checked.
     fn number_in_body(&self, layer: &Layer) -> usize {
-        layer.index - self.layers.first().map_or(0, |first| first.index)
+        if layer.body == 0 {
+            return layer.index;
+        }
+        layer.index - self.layers.iter().map(|other| other.index).min().unwrap_or(0)
     }
 
     /// Time for which the torch welds a layer, s.

@@ -61,11 +61,11 @@ fn the_part_is_laid_on_the_face_that_is_clicked() {
         harness.key_press(key);
         harness.run_steps(3);
         click(&mut harness, "… by face");
-        assert!(sees(&harness, "Click the face that is to lie below."));
+        assert!(sees(&harness, "Click the face that the part should lie on."));
         let middle = harness.get_by_label("3-D view").rect().center();
         click_at(&mut harness, middle);
         wait(&mut harness);
-        assert!(!sees(&harness, "Click the face that is to lie below."));
+        assert!(!sees(&harness, "Click the face that the part should lie on."));
         assert!(near(size(&harness), wanted), "{}", size(&harness));
     }
     // It lies upside down.

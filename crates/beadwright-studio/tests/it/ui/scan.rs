@@ -69,7 +69,7 @@ fn a_scan_that_cannot_be_compared_says_why() {
     assert!(harness.query_by_label_contains("off the part's surface").is_some());
     let harness = &mut crate::window::studio(&folder.path().join("other"));
     open(harness, &path);
-    assert!(sees(harness, "A scan is compared with a part: open a solid first."));
+    assert!(sees(harness, "A scan is compared with a solid part: open one first."));
 }
 
 #[test]
