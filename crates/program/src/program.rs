@@ -13,6 +13,7 @@ mod settings;
 mod spread;
 mod table;
 mod tilt;
+mod turning;
 mod turns;
 mod weave;
 

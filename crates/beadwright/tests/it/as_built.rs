@@ -95,7 +95,7 @@ fn beads_lie_where_the_part_is_whichever_way_its_layers_lie() {
 }
 
 #[test]
-fn what_is_left_out_counts_wherever_the_part_lies() {
+fn the_agreement_is_the_same_wherever_the_part_lies() {
     let (mesh, profile, plan) = block();
     let whole = compared(&plan.layers, &profile, &mesh);
     let by = DVec3::new(317.3, -911.7, 0.0);

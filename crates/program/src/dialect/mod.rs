@@ -95,7 +95,7 @@ pub trait Section {
         None
     }
 
-    /// How the section names the turn table under the part; `None` where the dialect writes no external axes.
+    /// How the section names what turns the part; `None` where the dialect writes nothing that does.
     fn table(&self) -> Option<Table> {
         None
     }

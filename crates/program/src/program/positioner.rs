@@ -4,6 +4,7 @@
 //! far from the other axis as "up" is, and that axis then brings both together (Paden 1986, subproblems 1 and 2). There are
 //! two ways, and whole turns of each axis; a pass begins where it can be followed to its end.
 
+use super::turning::{MOST_PER_MM, WOUND, whole_turns};
 use super::{Attitude, Instruction};
 use bead_plan::limit::{Broken, Limit, limit};
 use glam::{DQuat, DVec3};
@@ -13,12 +14,9 @@ use serde::{Deserialize, Serialize};
 const APART: f64 = 10.0;
 /// A normal this near to an axis is not turned by it, rad.
 const ON_AXIS: f64 = 1e-6;
-/// Under the arc an axis turns no farther than this, ° for each mm of the path, and this many times as far as the normal turns: where
-/// a normal passes near an axis, that axis would spin to keep the pool level to the last degree.
-const MOST_PER_MM: f64 = 2.0;
+/// Under the arc an axis may also turn this many times as far as the normal does: on small parts that is more than its length allows.
+/// Beyond that, where a normal passes near an axis, the axis would spin to keep the pool level to the last degree.
 const MOST_PER_TURN: f64 = 2.0;
-/// Whole turns that are tried to each side.
-const TURNS: i32 = 60;
 
 /// When the positioner turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -370,7 +368,7 @@ impl Holder {
             }
             let (mut start, mut beyond) = (start, 0.0);
             for (k, axis) in self.positioner.axes.iter().enumerate() {
-                let (turns, over) = axis.turns([least[k], most[k]], start[k], self.angles[k]);
+                let (turns, over) = whole_turns(axis.limits, [least[k], most[k]], start[k] - self.angles[k]);
                 start[k] += turns;
                 beyond += over;
             }
@@ -392,7 +390,7 @@ impl Holder {
         let ways = self.positioner.ways(mean.try_normalize().unwrap_or(steps[0].normal), self.angles);
         let placed = ways.into_iter().map(|mut way| {
             for (k, axis) in self.positioner.axes.iter().enumerate() {
-                way[k] += axis.turns([way[k]; 2], way[k], self.angles[k]).0;
+                way[k] += whole_turns(axis.limits, [way[k]; 2], way[k] - self.angles[k]).0;
             }
             self.positioner.within(way)
         });
@@ -422,8 +420,6 @@ impl Holder {
 const SAME: f64 = 0.1;
 /// An indexed part is turned for a pass that leans by so much more than it need, °.
 const WORTH_TURNING: f64 = 1.0;
-/// An axis that turns farther than this between passes turns while the joints move, °.
-const WOUND: f64 = 180.0;
 
 fn between(from: [f64; 2], to: [f64; 2], part: f64) -> [f64; 2] {
     std::array::from_fn(|k| from[k] + (to[k] - from[k]) * part)
@@ -457,19 +453,6 @@ impl Positioner {
     fn endless(&self) -> Self {
         let endless = |axis: &PositionerAxis| PositionerAxis { limits: [f64::NEG_INFINITY, f64::INFINITY], ..*axis };
         Self { axes: self.axes.iter().map(endless).collect(), ..self.clone() }
-    }
-}
-
-impl PositionerAxis {
-    /// By which whole turns, °, a stretch from the least to the greatest angle comes within the limits, nearest to where the axis
-    /// is; and by how much the stretch is still beyond them, °.
-    fn turns(&self, [least, most]: [f64; 2], start: f64, before: f64) -> (f64, f64) {
-        let [low, high] = self.limits;
-        let beyond = |turns: f64| (low - least - turns).max(0.0) + (most + turns - high).max(0.0);
-        let key = |turns: &f64| (beyond(*turns), (start + turns - before).abs());
-        let turns = (-TURNS..=TURNS).map(|k| 360.0 * f64::from(k));
-        let best = turns.min_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
-        best.map_or((0.0, 0.0), |turns| (turns, beyond(turns)))
     }
 }
 

@@ -1,16 +1,11 @@
 //! A turn table that turns with the torch, so that the arc stays on one side of it.
 
 use super::ProgramSettings;
+use super::turning::{MOST_PER_MM, WOUND, whole_turns};
 use glam::DVec3;
 
-/// The table turns no faster than this under the arc, ° for each mm of the path: places near its axis would spin it.
-const MOST_PER_MM: f64 = 2.0;
 /// Closer to the axis than this there is no side to turn to, mm.
 const AXIS_MM: f64 = 1.0;
-
-/// Between passes a table that turns farther than this turns while the joints move: the torch would have to move around with it
-/// in a straight move, whose target lies in the part's frame.
-const WOUND: f64 = 180.0;
 
 /// Follows the torch with the table.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,12 +42,8 @@ impl Follower {
         if let Some([low, high]) = self.range {
             let free = Self { range: None, ..self.clone() };
             let (least, most) = free.reached(path);
-            // The whole turn that takes the pass into the range, and of those the one that is nearest.
-            let beyond = |turn: f64| (low - least - turn).max(0.0) + (most + turn - high).max(0.0);
-            let turns = (-100..=100).map(|k| 360.0 * f64::from(k));
-            let key = |turn: &f64| (beyond(*turn), (self.angle + turn - before).abs());
-            let best = turns.min_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
-            self.angle = (self.angle + best.unwrap_or(0.0)).clamp(low, high);
+            let (turns, _) = whole_turns([low, high], [least, most], self.angle - before);
+            self.angle = (self.angle + turns).clamp(low, high);
         }
         Turned { angle: self.angle, far: (self.angle - before).abs() > WOUND }
     }
