@@ -305,6 +305,23 @@ fn bare_strips_along_the_edges_of_polygons_are_measured_as_they_are() {
     assert_eq!(fault, None);
 }
 
+/// What much is left bare of is measured on closer rows: strips thinner than the rows' distance make a difference there.
+#[test]
+fn strips_along_thin_rings_are_measured_as_they_are() {
+    for (seed, strategy) in [(20036, "contour"), (20068, "loop"), (20083, "loop")] {
+        let fault = wrong(&islands(6, seed), &profile_by("cmt-al2319-kuka", strategy));
+        assert_eq!(fault, None, "{seed}");
+    }
+}
+
+/// A pass that touches others where beads of thin places are tied to it keeps a width for each of its pieces, however short
+/// they are.
+#[test]
+fn tied_passes_have_a_width_at_every_point() {
+    let fault = wrong(&islands(5, 20060), &flat(profile_by("cmt-al2319-kuka", "hybrid")));
+    assert_eq!(fault, None);
+}
+
 /// `BEADWRIGHT_PARTS=2000` tries that many parts, `BEADWRIGHT_SEED=1000` others.
 #[test]
 fn random_parts_of_eight_families_are_filled_soundly_by_every_strategy() {

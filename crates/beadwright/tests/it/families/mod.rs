@@ -3,6 +3,7 @@
 #![allow(dead_code, unreachable_pub)]
 
 use beadwright::fill::sound;
+use beadwright::pass::Along;
 use beadwright::planar::triangulate::triangulate;
 use beadwright::planar::{DVec2, FillRule, Polygon, Region, Ring, polyline};
 use beadwright::{Layer, Mesh, Pass};
@@ -175,8 +176,15 @@ pub fn outside(passes: &[Pass], islands: &[Polygon]) -> f64 {
     places.filter(left).map(to_edges).fold(0.0, f64::max)
 }
 
-/// Why a layer cannot be welded: centre-lines outside, or passes that cross.
+/// Why a layer cannot be welded: centre-lines outside, passes that cross, or places without a width.
 pub fn fault(layer: &Layer) -> Option<String> {
+    let of_each_point = |pass: &&Pass| match &pass.width {
+        Along::Same(_) => true,
+        Along::Each(widths) => widths.len() == pass.points.len(),
+    };
+    if let Some(pass) = layer.passes.iter().find(|pass| !of_each_point(pass)) {
+        return Some(format!("layer {}: {} points, widths {:?}", layer.index + 1, pass.points.len(), pass.width));
+    }
     let by = outside(&layer.passes, &layer.islands);
     let lines: Vec<Vec<DVec2>> = layer.passes.iter().map(line).collect();
     let crossing = sound::crossings(&lines).next();

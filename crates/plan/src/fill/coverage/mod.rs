@@ -10,8 +10,10 @@ use planar::{Bounds, PerRow, Region};
 use std::ops::Range;
 use strip::{Disc, Span, Strip, union};
 
-/// Rows in a bead's width.
-const ROWS: f64 = 6.0;
+/// Rows in a bead's width, and where passes leave much of a region bare.
+const ROWS: [f64; 2] = [6.0, 20.0];
+/// Much is bare if it is more than this part of a region: then strips thinner than the rows' distance matter.
+const MUCH: f64 = 0.03;
 /// The rows are slanted, radians, since beads or edges along them would be counted in whole rows: at the first of these angles
 /// at which they measure the region itself [`WELL`] and none of its edges runs along them, or at the best one. Few of them lie
 /// along the edges of the same regular polygon.
@@ -58,12 +60,12 @@ struct Grid {
 }
 
 impl Grid {
-    /// Rows across a region at an angle, radians; `None` for an empty region.
-    fn at(angle: f64, region: &Region, width: f64) -> Option<Self> {
+    /// Rows across a region at an angle, radians, this far apart or a little less, mm; `None` for an empty region.
+    fn at(angle: f64, region: &Region, apart: f64) -> Option<Self> {
         let turn = DVec2::from_angle(-angle);
         let points = region.polygons().iter().flat_map(|island| island.outer.points());
         let bounds = Bounds::of(points.map(|p| turn.rotate(*p)))?;
-        let count = (ROWS * bounds.size().y / width).ceil().max(ROWS) as usize;
+        let count = (bounds.size().y / apart).ceil().max(ROWS[0]) as usize;
         let step = bounds.size().y / count as f64;
         Some(Self { angle, first: bounds.min.y + step / 2.0, step, count })
     }
@@ -97,11 +99,11 @@ impl Grid {
     }
 
     /// The rows that suit a region, and where they cross its boundary.
-    fn across(region: &Region, width: f64) -> Option<(Self, PerRow<f64>)> {
+    fn across(region: &Region, apart: f64) -> Option<(Self, PerRow<f64>)> {
         let area = region.area();
         let mut best: Option<(f64, Self, PerRow<f64>)> = None;
         for angle in ASLANT {
-            let grid = Self::at(angle, region, width)?;
+            let grid = Self::at(angle, region, apart)?;
             let rows = grid.rows(region);
             let lengths = rows.iter().flat_map(|row| row.chunks_exact(2)).map(|span| span[1] - span[0]);
             let error = (lengths.sum::<f64>() * grid.step - area).abs() + grid.step * grid.along(region);
@@ -119,7 +121,14 @@ impl Grid {
 impl Coverage {
     /// What passes cover where a region lies; `width` is the nominal bead's, mm. `None` for an empty region.
     pub fn of(paths: &[&Path], region: &Region, width: f64) -> Option<Self> {
-        let (grid, inside) = Grid::across(region, width)?;
+        let [coarse, fine] = ROWS.map(|rows| width / rows);
+        let found = Self::on_rows(paths, region, coarse)?;
+        if found.bare().area < MUCH * region.area() { Some(found) } else { Self::on_rows(paths, region, fine) }
+    }
+
+    /// The same on rows this far apart, mm.
+    fn on_rows(paths: &[&Path], region: &Region, apart: f64) -> Option<Self> {
+        let (grid, inside) = Grid::across(region, apart)?;
         let mut rows = Rows::new(grid.first, grid.step, grid.count);
         let turn = DVec2::from_angle(-grid.angle);
         for path in paths {

@@ -125,9 +125,10 @@ impl Line {
 
     /// Leaves its way `by` mm before its end for a place beside the end.
     fn turn_off(&mut self, place: DVec2, by: f64) {
+        let width = self.widths.last().copied();
         self.cut_end(by.min(MOST * self.length()));
         self.points.push(place);
-        self.widths.extend(self.widths.last().copied());
+        self.widths.extend(width);
     }
 }
 
