@@ -14,6 +14,7 @@ use common::{planned, profile};
 use glam::DVec3;
 use readers::cnc::{Control, Run, run};
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Passes with crater fills, waits between layers, and arcs.
 fn welder(name: &str) -> Profile {
@@ -98,18 +99,33 @@ fn an_impossible_axis_of_the_wire_is_refused() {
     }
 }
 
-/// What LinuxCNC's interpreter would do with a program; `BEADWRIGHT_RS274` is its command.
-fn interpreted(program: &str) -> readers::linuxcnc::Totals {
+/// The calls of LinuxCNC's interpreter as it runs a program; `BEADWRIGHT_RS274` is its command. M428 and M429 set an output, as in
+/// its examples of tilting tables.
+pub(crate) fn canon(program: &str) -> String {
+    static RUNS: AtomicUsize = AtomicUsize::new(0);
     let command = std::env::var("BEADWRIGHT_RS274").expect("BEADWRIGHT_RS274 is the path of rs274");
-    let folder = std::env::temp_dir().join(format!("beadwright-rs274-{}", std::process::id()));
+    let run = RUNS.fetch_add(1, Ordering::Relaxed);
+    let folder = std::env::temp_dir().join(format!("beadwright-rs274-{}-{run}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("part.ngc"), program).unwrap();
-    std::fs::write(folder.join("tool.tbl"), "T1 P1 D1 Z0\n").unwrap();
+    let mut ini = "[RS274NGC]\nSUBROUTINE_PATH = .\n".to_owned();
+    for (code, value) in [(428, 1), (429, 0)] {
+        ini.push_str(&format!("REMAP = M{code} modalgroup=10 ngc=to{code}\n"));
+        let lines = format!("o<to{code}> sub\nM68 E3 Q{value}\nM66 E0 L0\no<to{code}> endsub\nM2\n");
+        std::fs::write(folder.join(format!("to{code}.ngc")), lines).unwrap();
+    }
+    for (name, text) in [("part.ngc", program), ("tool.tbl", "T1 P1 D1 Z0\n"), ("machine.ini", &ini)] {
+        std::fs::write(folder.join(name), text).unwrap();
+    }
     let mut run = std::process::Command::new(&command);
-    let output = run.args(["-g", "-t", "tool.tbl", "part.ngc"]).current_dir(&folder).output().unwrap();
+    let run = run.args(["-g", "-t", "tool.tbl", "-i", "machine.ini", "part.ngc"]).current_dir(&folder);
+    let output = run.output().unwrap();
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    readers::linuxcnc::run(&String::from_utf8(output.stdout).unwrap())
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn interpreted(program: &str) -> readers::linuxcnc::Totals {
+    readers::linuxcnc::run(&canon(program))
 }
 
 /// The interpreter's calls: lengths and times are those of the plan, and arc, gas and wire are on along beads and nowhere else.

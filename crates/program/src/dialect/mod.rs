@@ -45,8 +45,10 @@ pub struct Dialect {
     pub module_extensions: &'static [&'static str],
     /// Whether it writes the linear axis of the robot.
     pub linear_axis: bool,
-    /// Whether it writes the axes that turn the part.
+    /// Whether it writes the axis of a turn table (`program.table_angle`, `program.table_side`).
     pub table: bool,
+    /// Whether it writes the axes of a positioner (`program.positioner`).
+    pub positioner: bool,
     /// Whether a trimmed line can occur only in a program of this dialect; always false if another dialect reads its
     /// programs.
     typical: fn(&str) -> bool,

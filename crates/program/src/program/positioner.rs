@@ -37,7 +37,8 @@ pub struct PositionerAxis {
     /// Its direction with all axes at 0, in the part's x, y and z, of any length: a positive angle turns the part counter-clockwise
     /// as seen against it.
     pub direction: [f64; 3],
-    /// A point on it, likewise, mm; default 0, 0, 0. Only `beadwright reach` needs it.
+    /// A point on it, likewise, mm; default 0, 0, 0. `beadwright reach` needs it, and G-code for the way to the first pass: robots know
+    /// where their axes lie.
     #[serde(default)]
     pub through: [f64; 3],
     /// The least and the greatest angle, °.

@@ -42,8 +42,9 @@ pub struct ProgramSettings {
     /// where it can follow them to their end, and at the end of its range it stops while the torch continues around it. Leave it
     /// out if the table turns endlessly.
     pub table_range: Option<[f64; 2]>,
-    /// One or two axes that turn the part so that layers lie level under the torch, and when they turn. KRL and RAPID write them, as
-    /// `table_angle`, which they replace. Leave it out if nothing turns the part.
+    /// One or two axes that turn the part so that layers lie level under the torch, and when they turn. KRL, RAPID, FANUC and
+    /// G-code write them (`krl.table_machine`, `rapid.table_unit`, `fanuc.table_group`, `gcode.positioner`). It replaces
+    /// `table_angle`. Leave it out if nothing turns the part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub positioner: Option<Positioner>,
     /// Which fraction of a wall's lean the torch adopts (work angle), 0 to 1; 0, the default, leaves it as in the robot's

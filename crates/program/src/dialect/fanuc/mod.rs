@@ -15,6 +15,7 @@ pub const DIALECT: Dialect = Dialect {
     module_extensions: &["ls"],
     linear_axis: false,
     table: true,
+    positioner: true,
     typical: read::typical,
     read: read::read,
 };

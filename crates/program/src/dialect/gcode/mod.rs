@@ -4,12 +4,14 @@ mod block;
 mod branches;
 mod control;
 mod hints;
+mod positioner;
 mod read;
 mod review;
 mod section;
 pub(super) mod write;
 
 pub use control::GcodeControl;
+pub use positioner::GcodePositioner;
 pub use section::{Gcode, GcodeComments};
 
 use super::Dialect;
@@ -21,6 +23,7 @@ pub const DIALECT: Dialect = Dialect {
     module_extensions: &[],
     linear_axis: false,
     table: false,
+    positioner: true,
     typical: read::typical,
     read: read::read,
 };

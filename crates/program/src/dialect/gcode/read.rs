@@ -134,6 +134,10 @@ struct Reader {
     spindle: f64,
     /// The first line that starts the spindle without a speed.
     lit_without_speed: Option<usize>,
+    /// Angles of A, B and C, °.
+    angles: [f64; 3],
+    /// Whether tool centre point control is on: X, Y and Z are then places on the part, however axes turn it.
+    tip_control: bool,
 }
 
 impl Reader {
@@ -165,6 +169,8 @@ impl Reader {
             pace: 1.0,
             spindle: 0.0,
             lit_without_speed: None,
+            angles: [0.0; 3],
+            tip_control: false,
         }
     }
 
@@ -188,6 +194,8 @@ impl Reader {
             if !zero {
                 self.trace.note("TRANS", SHIFTS, number);
             }
+        } else if ["TRAORI", "TRAFOOF"].contains(&compact.as_str()) {
+            self.control_tip(compact == "TRAORI");
         } else {
             let name = text.trim().split([' ', '=', '\t']).next().unwrap_or_default();
             self.trace.note(name, "is not understood and was left out", number);
@@ -241,6 +249,8 @@ impl Reader {
                 901 | 911 => self.absolute_centres = code == 901,
                 921..=923 => self.offset = DVec3::ZERO,
                 930 | 940 => self.inverse_time = code == 930,
+                434 | 435 => self.control_tip(true),
+                490 => self.control_tip(false),
                 40 | 280 | 530 | 920 => {}
                 // Heights added to layers are 0 until somebody sets them.
                 520 | 580 | 590 => {
@@ -263,12 +273,24 @@ impl Reader {
             let unit = if self.inverse_time { 1.0 } else { self.unit };
             self.feed = block.get(b'F').unwrap_or(0.0) * unit;
         }
-        if block.has_any(b"ABC") && block.m.iter().next().is_none() {
-            self.trace.note("A, B or C", "turns an axis, which is not followed", line);
+        if block.m.iter().next().is_none() {
+            let angles = [b'A', b'B', b'C'].map(|letter| block.get(letter));
+            let before = std::mem::take(&mut self.angles);
+            self.angles = std::array::from_fn(|k| {
+                angles[k].map_or(before[k], |to| if self.relative { before[k] + to } else { to })
+            });
         }
         if self.printer && block.get(b'T').is_some_and(|t| t != 0.0) {
             self.trace.note("T", "selects another tool, which was read as the first one", line);
         }
+    }
+
+    /// Switches tool centre point control. Where axes have turned the part, the torch is then at other coordinates.
+    fn control_tip(&mut self, on: bool) {
+        if on != self.tip_control && self.angles != [0.0; 3] {
+            self.trace.forget();
+        }
+        self.tip_control = on;
     }
 
     /// Whether this is a printer's M code, whose words are settings (`M201 X9000 E5000`).
@@ -287,6 +309,8 @@ impl Reader {
                 _ => self.trace.note("M200", "without a diameter is not understood and was left out", line),
             },
             20 | 300 if !self.printer => {}
+            // As LinuxCNC's examples of tilting tables have them.
+            4280 | 4290 if !self.printer => self.control_tip(code == 4280),
             _ if code % 10 == 0 && HARMLESS_M.contains(&(code / 10)) => self.seen(code, block),
             _ if self.on.iter().chain(&self.off).any(|c| c.is_in(block)) => {}
             _ => {
@@ -376,6 +400,9 @@ impl Reader {
             false if motion == 0 && !self.printer => Metal::Off,
             false => self.trace.metal(),
         };
+        if !matches!(metal, Metal::Off) && !self.tip_control && self.angles != [0.0; 3] {
+            self.trace.note("A, B or C", "turns an axis, which is not followed", line);
+        }
         let mut step = Step { speed: 0.0, metal, width: self.width, line };
         let curve = if motion >= 2 { self.curve(block, to, line) } else { None };
         let length = curve.as_ref().map_or(start.distance(to), |c| (c.sweep * c.u.length()).hypot(c.rise.length()));

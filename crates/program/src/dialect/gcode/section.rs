@@ -1,9 +1,10 @@
 //! CNC G-code in profiles: the keys, and the limits of their values.
 
 use super::control::GcodeControl;
+use super::positioner::{GcodePositioner, TABLE};
 use super::write::CncGcode;
 use crate::dialect::writing::{is_extension, needs};
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
 use crate::program::ProgramSettings;
 use bead_plan::limit::{Broken, CONTROLLER, Limit, limits};
 use serde::{Deserialize, Serialize};
@@ -62,6 +63,8 @@ pub struct Gcode {
     /// The control in whose language branches, heights of layers and file names are written: `linuxcnc`, `fanuc`, `siemens`
     /// or `twincat` (NC I, classic interpreter). Needed for `program.restart` and `program.layer_offsets`; default none.
     pub control: Option<GcodeControl>,
+    /// How the axes that turn the part are written; needed for `[program.positioner]`, default none.
+    pub positioner: Option<GcodePositioner>,
     /// Lines at other places of the program; default none.
     #[serde(default)]
     pub hooks: Hooks,
@@ -89,7 +92,7 @@ fn hundred() -> f64 {
 }
 
 /// Whether a text is the address of an axis: a letter, or a letter with a number and `=`.
-fn is_axis(text: &str) -> bool {
+pub(super) fn is_axis(text: &str) -> bool {
     let Some((letter, rest)) = text.split_at_checked(1) else { return false };
     let index = rest.strip_suffix('=').unwrap_or("x");
     "ABCDEHLOPQRSTUVW".contains(letter) && (rest.is_empty() || index.parse::<u8>().is_ok())
@@ -117,12 +120,15 @@ impl Section for Gcode {
             let reason = "it must be one letter that no other word uses, or a letter, a number and =, such as \"Q1=\".";
             return Some(Broken::text("gcode.wire_axis", axis, reason));
         }
+        if let Some(broken) = self.positioner.as_ref().and_then(|own| own.broken(program)) {
+            return Some(broken);
+        }
         let coarse = program.arcs && self.decimals < 3;
         coarse.then(|| program.broken_tolerance("arcs = true needs 3 gcode.decimals or more: the radius must be kept."))
     }
 
     fn templates(&self) -> Templates<'_> {
-        vec![
+        let mut templates = vec![
             ("gcode.header", &self.header),
             ("gcode.layer_start", &self.layer_start),
             ("gcode.arc_on", &self.arc_on),
@@ -131,7 +137,9 @@ impl Section for Gcode {
             ("gcode.wire_feed", &self.wire_feed),
             ("gcode.crater", &self.crater),
             ("gcode.footer", &self.footer),
-        ]
+        ];
+        templates.extend(self.positioner.iter().flat_map(GcodePositioner::templates));
+        templates
     }
 
     fn supports(&self, extra: Extra) -> bool {
@@ -140,8 +148,14 @@ impl Section for Gcode {
             Extra::Restart => self.control.is_some() && self.wire_axis.is_none(),
             Extra::LayerOffsets => self.control.is_some(),
             Extra::Weave => true,
-            Extra::Tilt | Extra::Chart => false,
+            // The part turns, and the torch hangs straight down.
+            Extra::Chart => self.positioner.is_some(),
+            Extra::Tilt => false,
         }
+    }
+
+    fn table(&self) -> Option<Table> {
+        Some(Table { key: "gcode.positioner", known: self.positioner.is_some(), what: TABLE })
     }
 
     fn hooks(&self) -> Option<&Hooks> {

@@ -1,13 +1,14 @@
-//! CNC G-code, three axes: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens, TwinCAT) are
-//! set by keys and templates in the profile.
+//! CNC G-code: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens, TwinCAT) are
+//! set by keys and templates in the profile. Where rotary axes turn the part, places are those on the part.
 
 use super::control::GcodeControl;
+use super::positioner::Axes;
 use super::section::{Gcode, GcodeComments};
 use crate::dialect::DialectError;
 use crate::dialect::writing::frame::{self, Frame, Part, Piece, Skippable, Syntax};
 use crate::dialect::writing::{Chunk, Job, ascii, restart};
 use crate::number::push_fixed;
-use crate::program::{Circle, Instruction};
+use crate::program::{Attitude, Circle, Instruction};
 use bead_plan::pass::PassKind;
 use glam::DVec3;
 
@@ -30,7 +31,10 @@ pub(super) struct CncGcode {
     feed: f64,
     /// Wire fed so far, mm.
     wire: f64,
+    /// What X, Y and Z were last, mm.
     at: Option<DVec3>,
+    /// What turns the part.
+    axes: Option<Axes>,
     /// Whether blocks have numbers.
     numbered: bool,
     /// Labels so far.
@@ -46,6 +50,8 @@ impl CncGcode {
         let file = format!("{name}.{}", gcode.extension);
         let jumps = gcode.control.is_some_and(GcodeControl::jumps_to_numbers) && job.program.restart;
         let numbered = gcode.block_numbers && !jumps;
+        let turned = gcode.positioner.as_ref().zip(job.program.positioner.as_ref());
+        let axes = turned.map(|(words, positioner)| Axes::new(words, positioner));
         Self {
             frame: Frame::new(job, ascii(&job.part), MAX_COMMENT, &gcode),
             file,
@@ -54,6 +60,7 @@ impl CncGcode {
             feed: 0.0,
             wire: 0.0,
             at: None,
+            axes,
             numbered,
             labels: 0,
             open: Vec::new(),
@@ -102,24 +109,26 @@ impl CncGcode {
         }
     }
 
-    /// A move; axes that do not move are left out.
-    fn motion(&mut self, text: &mut String, word: &str, to: DVec3, circle: Option<Circle>, feed: Option<f64>) {
+    /// A move to a place of the part; axes that do not move are left out.
+    fn motion(&mut self, text: &mut String, word: &str, place: DVec3, circle: Option<Circle>, pace: Pace) {
+        let to = self.axes.as_ref().map_or(place, |axes| axes.on_part(place));
         let moved = [0, 1, 2].map(|axis| self.at.is_none_or(|at| at[axis] != to[axis]));
-        if moved == [false; 3] {
+        let turns = self.axes.as_ref().is_some_and(Axes::turns);
+        if moved == [false; 3] && !turns {
             return;
         }
+        let alone = self.axes.as_ref().filter(|_| moved == [false; 3]).and_then(Axes::turn);
         self.begin_block(text);
         text.push_str(word);
-        for axis in (0..3).filter(|&axis| moved[axis]) {
-            text.push_str([" X", " Y", " Z"][axis]);
-            push_fixed(text, to[axis], self.gcode.decimals);
-        }
+        self.push_places(text, to, moved);
+        self.axes.iter_mut().for_each(|axes| axes.write(text));
         if let (Some(circle), Some(at)) = (circle, self.at) {
             push_centre(text, circle.centre - at, self.gcode.decimals);
         }
-        if let (Some(speed), Some(at)) = (feed, self.at) {
+        if let (Pace::Weld(speed), Some(at)) = (pace, self.at) {
             self.feed_wire(text, circle.map_or_else(|| at.distance(to), |c| c.length()) / speed);
         }
+        let feed = alone.map_or_else(|| pace.feed(), |(seconds, angle)| Some(angle / seconds));
         if let Some(feed) = feed.filter(|&f| f != self.feed) {
             self.feed = feed;
             text.push_str(" F");
@@ -127,6 +136,22 @@ impl CncGcode {
         }
         text.push('\n');
         self.at = Some(to);
+    }
+
+    fn push_places(&self, text: &mut String, to: DVec3, moved: [bool; 3]) {
+        for axis in (0..3).filter(|&axis| moved[axis]) {
+            text.push_str([" X", " Y", " Z"][axis]);
+            push_fixed(text, to[axis], self.gcode.decimals);
+        }
+    }
+
+    /// Blocks that switch tool centre point control on or off, where there is any; what X, Y and Z are is then not known.
+    fn switch_tcp(&mut self, text: &mut String, on: bool) {
+        let Some(axes) = &self.axes else { return };
+        let lines = if on { &axes.words.tcp_on } else { &axes.words.tcp_off };
+        let lines: Vec<String> = self.frame.values.expand(lines).collect();
+        lines.iter().for_each(|line| self.line(text, line));
+        self.at = None;
     }
 
     /// Moves the wire axis, if there is one, as far as it goes in that time.
@@ -145,6 +170,26 @@ impl CncGcode {
 
     fn chunk(&self, text: String) -> Vec<Chunk> {
         vec![Chunk { file: self.file.clone(), text }]
+    }
+}
+
+/// How fast a move runs.
+#[derive(Clone, Copy)]
+enum Pace {
+    /// As fast as it can.
+    Rapid,
+    /// mm/s, with the arc off.
+    Travel(f64),
+    /// mm/s, with the arc on.
+    Weld(f64),
+}
+
+impl Pace {
+    fn feed(self) -> Option<f64> {
+        match self {
+            Self::Rapid => None,
+            Self::Travel(speed) | Self::Weld(speed) => Some(speed),
+        }
     }
 }
 
@@ -190,6 +235,7 @@ impl Syntax for CncGcode {
     fn end_main(&mut self) -> Vec<Chunk> {
         let mut text = String::new();
         self.raise(&mut text, "0.000");
+        self.switch_tcp(&mut text, false);
         frame::end(self, &mut text);
         if self.gcode.percent_signs {
             text.push_str("%\n");
@@ -239,6 +285,7 @@ impl Syntax for CncGcode {
         if let Some(end) = self.open.pop() {
             self.plain(text, &end);
             (self.at, self.feed) = (None, 0.0);
+            self.axes.iter_mut().for_each(Axes::forget);
         }
     }
 
@@ -264,20 +311,37 @@ impl Syntax for CncGcode {
         self.open.push(end);
     }
 
-    /// The machine may be anywhere at first: to the safe height, across, and down.
+    /// The machine may be anywhere at first: to the safe height, across, and down. What turns the part turns it at that height.
     fn approach(&mut self, text: &mut String, to: DVec3) {
-        let safe = self.gcode.safe_z.max(to.z);
+        self.switch_tcp(text, false);
+        self.axes.iter_mut().for_each(Axes::forget);
+        let place = self.axes.as_ref().map_or(to, |axes| axes.in_machine(to));
+        let safe = self.gcode.safe_z.max(place.z);
         self.begin_block(text);
         text.push_str("G0 Z");
         push_fixed(text, safe, self.gcode.decimals);
         text.push('\n');
-        self.at = Some(DVec3::new(f64::NAN, f64::NAN, safe));
-        self.travel(text, to.with_z(safe));
+        self.begin_block(text);
+        text.push_str("G0");
+        self.push_places(text, place, [true, true, false]);
+        self.axes.iter_mut().for_each(|axes| axes.write(text));
+        text.push('\n');
+        self.at = Some(place.with_z(safe));
+        self.switch_tcp(text, true);
         self.travel(text, to);
     }
 
+    fn stand(&mut self, attitude: Attitude) {
+        self.axes.iter_mut().for_each(|axes| axes.held = attitude.held.or(axes.held));
+    }
+
+    /// A rapid move would turn the part as fast as it can.
     fn travel(&mut self, text: &mut String, to: DVec3) {
-        self.motion(text, "G0", to, None, None);
+        let speed = self.frame.travel_speed;
+        match self.axes {
+            Some(_) => self.motion(text, "G1", to, None, Pace::Travel(speed)),
+            None => self.motion(text, "G0", to, None, Pace::Rapid),
+        }
     }
 
     fn pass(&mut self, text: &mut String, pass: usize, kind: PassKind) {
@@ -286,7 +350,7 @@ impl Syntax for CncGcode {
 
     fn weld(&mut self, text: &mut String, piece: Piece, _next: &[Instruction]) {
         let word = piece.circle.map_or("G1", |circle| circle.word());
-        self.motion(text, word, piece.to, piece.circle, Some(piece.speed));
+        self.motion(text, word, piece.to, piece.circle, Pace::Weld(piece.speed));
     }
 
     /// A wire axis continues alone, at its own speed, where others wait.

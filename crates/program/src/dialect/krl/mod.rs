@@ -21,6 +21,7 @@ pub const DIALECT: Dialect = Dialect {
     module_extensions: &["src", "sub"],
     linear_axis: true,
     table: true,
+    positioner: true,
     typical: read::typical,
     read: read::read,
 };

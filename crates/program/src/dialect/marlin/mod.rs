@@ -14,6 +14,7 @@ pub const DIALECT: Dialect = Dialect {
     module_extensions: &[],
     linear_axis: false,
     table: false,
+    positioner: false,
     // A printer's file is recognised as G-code.
     typical: |_| false,
     read: super::gcode::DIALECT.read,

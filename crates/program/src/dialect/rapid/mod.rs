@@ -19,6 +19,7 @@ pub const DIALECT: Dialect = Dialect {
     module_extensions: &["mod"],
     linear_axis: true,
     table: true,
+    positioner: true,
     typical: read::typical,
     read: read::read,
 };

@@ -15,6 +15,7 @@ pub const DIALECT: Dialect = Dialect {
     module_extensions: &[],
     linear_axis: false,
     table: false,
+    positioner: false,
     typical: read::typical,
     read: read::read,
 };

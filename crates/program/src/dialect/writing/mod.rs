@@ -210,15 +210,19 @@ fn check_axes(dialect: &'static Dialect, program: &ProgramSettings) -> Result<()
         _ if program.linear_axis.is_some() && !dialect.linear_axis => {
             refuse("program.linear_axis", |dialect| dialect.linear_axis)
         }
-        Some(key) if !dialect.table => refuse(key, |dialect| dialect.table),
+        Some(key @ POSITIONER) if !dialect.positioner => refuse(key, |dialect| dialect.positioner),
+        Some(key) if key != POSITIONER && !dialect.table => refuse(key, |dialect| dialect.table),
         _ => Ok(()),
     }
 }
 
+/// The key of a positioner.
+const POSITIONER: &str = "program.positioner";
+
 /// The key of what turns the part; `None` where nothing does.
 fn turning_key(program: &ProgramSettings) -> Option<&'static str> {
     let keys = [
-        (program.positioner.is_some(), "program.positioner"),
+        (program.positioner.is_some(), POSITIONER),
         (program.table_side.is_some(), "program.table_side"),
         (program.table_angle.is_some(), "program.table_angle"),
     ];
