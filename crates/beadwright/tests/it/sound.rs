@@ -230,9 +230,12 @@ fn what_is_left_bare_is_said() {
     }
 }
 
-/// Lengths and areas of a plan: what must not depend on where the part lies or how its file is ordered.
+/// Lengths and areas of a plan: what must not depend on where the part lies or how its file is ordered. Metal is shared out in the
+/// same way for all strategies: one of them shows that.
 fn figures(mesh: &Mesh, strategy: &str) -> [f64; 4] {
-    let m = plan::plan("part", mesh, &profile_by("cmt-al2319-kuka", strategy), &Task::new()).unwrap().summary.metrics;
+    let profile = profile_by("cmt-al2319-kuka", strategy);
+    let profile = if strategy == "contour" { profile } else { flat(profile) };
+    let m = plan::plan("part", mesh, &profile, &Task::new()).unwrap().summary.metrics;
     [m.passes as f64, m.deposited_length_mm, m.slice_area_mm2, m.planned_area_mm2]
 }
 
@@ -325,7 +328,7 @@ fn tied_passes_have_a_width_at_every_point() {
 /// `BEADWRIGHT_PARTS=2000` tries that many parts, `BEADWRIGHT_SEED=1000` others.
 #[test]
 fn random_parts_of_eight_families_are_filled_soundly_by_every_strategy() {
-    let parts: u64 = std::env::var("BEADWRIGHT_PARTS").ok().and_then(|n| n.parse().ok()).unwrap_or(40);
+    let parts: u64 = std::env::var("BEADWRIGHT_PARTS").ok().and_then(|n| n.parse().ok()).unwrap_or(16);
     let first: u64 = std::env::var("BEADWRIGHT_SEED").ok().and_then(|n| n.parse().ok()).unwrap_or(0);
     let faults: Vec<String> = (0..parts)
         .into_par_iter()
