@@ -22,6 +22,19 @@ pub struct Body {
     pub stick_out: f64,
     /// Size of the table along the part's x and y, about the part's origin and level with it, mm.
     pub table: [f64; 2],
+    /// Clamps, vices, jaws and whatever else stands on the table and turns with it; default none.
+    #[serde(default)]
+    pub fixtures: Vec<Fixture>,
+}
+
+/// A box beside the part, in the part's x, y and z.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fixture {
+    /// Its corner with the least coordinates, mm.
+    pub low: [f64; 3],
+    /// Its corner with the greatest coordinates, mm.
+    pub high: [f64; 3],
 }
 
 /// Something that may be hit.
@@ -42,6 +55,8 @@ pub enum Solid {
     Table,
     /// The part, as far as it is welded.
     Part,
+    /// Something that holds the part.
+    Fixture,
 }
 
 impl Solid {
@@ -55,6 +70,7 @@ impl Solid {
             Self::Base => "the robot's base",
             Self::Table => "the table",
             Self::Part => "the part",
+            Self::Fixture => "a fixture",
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::arm::{Arm, Frame};
 use crate::arm_keys::ArmKeys;
 use crate::arm_table::ArmTable;
-use crate::body::Body;
+use crate::body::{Body, Fixture};
 use crate::error::CellError;
 use crate::home::Home;
 use crate::urdf;
@@ -210,6 +210,10 @@ impl Cell {
             ];
             ranges.extend(sizes.map(|(key, v)| (key, v, 0.0, 2e3, "mm")));
             ranges.extend(body.table.map(|v| ("body.table", v, 0.0, 1e5, "mm")));
+            for fixture in &body.fixtures {
+                ranges.extend(fixture.low.map(|v| ("body.fixtures.low", v, -1e5, 1e5, "mm")));
+                ranges.extend(fixture.high.map(|v| ("body.fixtures.high", v, -1e5, 1e5, "mm")));
+            }
         }
         // Written so that NaN is out of range too.
         if let Some((key, value, low, high, unit)) =
@@ -233,6 +237,11 @@ impl Cell {
         if let Some(table) = self.table.as_ref().filter(|t| t.limits[0] >= t.limits[1]) {
             let reason = "the least angle comes first, then the greatest.".to_owned();
             return Some(("table.limits", format!("{:?}", table.limits), reason));
+        }
+        let is_box = |fixture: &Fixture| (0..3).all(|axis| fixture.low[axis] < fixture.high[axis]);
+        if let Some(fixture) = self.body.iter().flat_map(|body| &body.fixtures).find(|fixture| !is_box(fixture)) {
+            let reason = "each coordinate must be less than that of body.fixtures.high.".to_owned();
+            return Some(("body.fixtures.low", format!("{:?}", fixture.low), reason));
         }
         self.arm.first_broken()
     }

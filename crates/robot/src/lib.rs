@@ -9,13 +9,14 @@
 //!    the greatest least margin, the one that turns least;
 //! 3. every point is walked with that course: joint angles, margins, speeds, [findings](finding) (`walk.rs`); before and
 //!    after it the moves from and to home (`home.rs`), where the cell has one;
-//! 4. at every stop the arm and the torch, as capsules, are compared with each other, with the table and with the metal
-//!    laid so far (`room.rs`), where the cell says how thick they are.
+//! 4. at every stop the arm and the torch, as capsules, are compared with each other, with the table and the fixtures on it, and
+//!    with the metal laid so far (`room.rs`, `metal.rs`), where the cell says how thick they are. Table, fixtures and metal turn with
+//!    the part.
 //!
 //! A [`Trajectory`] has the joints over time, for simulators. [`suggest()`] searches for a place of the part with greater margins, [`external_axes`]
 //! for the place of the robot on a linear axis and for the angle of a table under the part.
 //!
-//! Not checked: cables, fixtures and anything else besides the table, and the dynamics of the load.
+//! Not checked: cables, anything that the cell does not describe, and the dynamics of the load.
 
 pub mod arm;
 mod arm_keys;
@@ -28,6 +29,7 @@ mod external;
 pub mod finding;
 pub mod home;
 pub mod linear_axis;
+mod metal;
 mod opw;
 mod room;
 pub mod suggest;
@@ -40,7 +42,7 @@ mod walk;
 
 pub use arm::{Arm, Branch, Frame, Joints, Margins};
 pub use arm_table::{ArmTable, OpwTable, Shape};
-pub use body::{Body, Solid};
+pub use body::{Body, Fixture, Solid};
 pub use cell::{Cell, LinearAxis, PartPlace, Table};
 pub use chain::{Chain, ChainError};
 pub use error::CellError;

@@ -4,10 +4,11 @@
 //! about cables, wire feeders and fixtures.
 
 use crate::arm::{Arm, Frame, Joints};
-use crate::body::{Body, Capsule, Solid, capsules};
+use crate::body::{Body, Capsule, Fixture, Solid, capsules};
 use crate::cell::Cell;
+use crate::metal::Metal;
+use crate::track::Stop;
 use glam::{DVec2, DVec3};
-use std::collections::HashMap;
 
 /// Two solids that come too near.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,9 +18,7 @@ pub(crate) struct Contact {
     pub(crate) depth: f64,
 }
 
-/// Size of the cells in which the metal is recorded, mm.
-const CELL_MM: f64 = 10.0;
-/// Capsules are compared with table and part at places this far apart, mm.
+/// Capsules are compared with table and fixtures at places this far apart, mm.
 const STEP_MM: f64 = 10.0;
 
 /// Arm, torch, table and part while a program runs.
@@ -28,34 +27,26 @@ pub(crate) struct Room<'a> {
     body: &'a Body,
     flange_from_tool: Frame,
     part_from_base: Frame,
-    /// Top of the metal by cell, in the part's frame, mm.
-    tops: HashMap<[i64; 2], f64>,
-    low: DVec3,
-    high: DVec3,
+    /// What has been welded, in the part's frame.
+    metal: Metal,
 }
 
 impl<'a> Room<'a> {
-    /// A room without metal; none where the cell has no body.
-    pub(crate) fn new(cell: &'a Cell, arm: &'a Arm, base_from_part: &Frame) -> Option<Self> {
+    /// A room without metal, for beads of this width, mm; none where the cell has no body.
+    pub(crate) fn new(cell: &'a Cell, arm: &'a Arm, base_from_part: &Frame, bead_width: f64) -> Option<Self> {
         let body = cell.body.as_ref()?;
         Some(Self {
             arm,
             body,
             flange_from_tool: cell.flange_from_tool(),
             part_from_base: base_from_part.inverse(),
-            tops: HashMap::new(),
-            low: DVec3::INFINITY,
-            high: DVec3::NEG_INFINITY,
+            metal: Metal::new(bead_width),
         })
     }
 
-    /// A bead was laid from one place of the part to another.
-    pub(crate) fn lay(&mut self, from: DVec3, to: DVec3) {
-        for place in places(from, to) {
-            let top = self.tops.entry(cell_of(place)).or_insert(f64::NEG_INFINITY);
-            *top = top.max(place.z);
-        }
-        (self.low, self.high) = (self.low.min(from.min(to)), self.high.max(from.max(to)));
+    /// A bead was laid from one stop to another.
+    pub(crate) fn lay(&mut self, from: &Stop, to: &Stop) {
+        self.metal.lay([from.at, to.at], [from, to].map(|stop| stop.attitude.layer * DVec3::Z));
     }
 
     /// The deepest contact of each pair of solids, with the table turned like this.
@@ -80,7 +71,8 @@ impl<'a> Room<'a> {
             // The base stands on the floor next to the table, and does not move.
             if a.solid != Solid::Base {
                 note([a.solid, Solid::Table], self.above_table(a));
-                note([a.solid, Solid::Part], self.above_part(a));
+                note([a.solid, Solid::Part], self.metal.gap(a));
+                self.body.fixtures.iter().for_each(|fixture| note([a.solid, Solid::Fixture], gap_to(fixture, a)));
             }
         }
         found
@@ -96,32 +88,6 @@ impl<'a> Room<'a> {
         };
         places(capsule.ends[0], capsule.ends[1]).into_iter().map(gap).fold(f64::INFINITY, f64::min)
     }
-
-    /// How far a capsule is from the metal laid so far, mm.
-    fn above_part(&self, capsule: &Capsule) -> f64 {
-        let reach = (capsule.radius / CELL_MM).ceil() as i64 + 1;
-        let gap = |place: DVec3| {
-            let beside = (self.low - place).max(place - self.high).max(DVec3::ZERO);
-            // Below the part is the table.
-            if beside.with_z((place.z - self.high.z).max(0.0)).length() >= capsule.radius {
-                return f64::INFINITY;
-            }
-            let [x, y] = cell_of(place);
-            let around = (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| [x + i, y + j]));
-            let distance = |cell: [i64; 2]| {
-                let top = self.tops.get(&cell)?;
-                let centre = (DVec2::new(cell[0] as f64, cell[1] as f64) + 0.5) * CELL_MM;
-                let beside = ((place.truncate() - centre).abs() - CELL_MM / 2.0).max(DVec2::ZERO);
-                Some(beside.extend((place.z - top).max(0.0)).length() - capsule.radius)
-            };
-            around.filter_map(distance).fold(f64::INFINITY, f64::min)
-        };
-        if self.tops.is_empty() {
-            f64::INFINITY
-        } else {
-            places(capsule.ends[0], capsule.ends[1]).into_iter().map(gap).fold(f64::INFINITY, f64::min)
-        }
-    }
 }
 
 /// Whether two links move against each other in a joint that keeps them apart.
@@ -130,8 +96,11 @@ fn joined(a: Solid, b: Solid) -> bool {
     matches!((a, b), (Torch, Torch | Hand) | (Hand, Forearm) | (Forearm, UpperArm) | (UpperArm, Base))
 }
 
-fn cell_of(place: DVec3) -> [i64; 2] {
-    (place.truncate() / CELL_MM).floor().as_i64vec2().to_array()
+/// How far a capsule is from a fixture, mm; below 0 where it is inside.
+fn gap_to(fixture: &Fixture, capsule: &Capsule) -> f64 {
+    let [low, high] = [fixture.low, fixture.high].map(DVec3::from);
+    let gap = |place: DVec3| (low - place).max(place - high).max(DVec3::ZERO).length() - capsule.radius;
+    places(capsule.ends[0], capsule.ends[1]).into_iter().map(gap).fold(f64::INFINITY, f64::min)
 }
 
 /// Places on a straight line, ends included.

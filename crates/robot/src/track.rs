@@ -67,6 +67,8 @@ pub struct Track {
     pub stops: Vec<Stop>,
     /// Speed of travels, mm/s.
     pub travel_speed: f64,
+    /// The greatest width with which a pass begins, mm.
+    pub bead_width: f64,
 }
 
 impl Track {
@@ -86,7 +88,9 @@ impl Track {
     /// assert!((track.length() - (20.0 + 100.0 + 20.0)).abs() < 1e-9);
     /// ```
     pub fn of<L: Borrow<Layer>>(layers: &[L], programmer: Programmer, travel_speed: f64) -> Self {
-        let mut track = Self { travel_speed, ..Self::default() };
+        let passes = layers.iter().flat_map(|layer| &layer.borrow().passes);
+        let bead_width = passes.map(|pass| pass.width.after(0)).fold(0.0, f64::max);
+        let mut track = Self { travel_speed, bead_width, ..Self::default() };
         let mut programmer = programmer.unfitted();
         for layer in layers.iter().map(L::borrow) {
             track.add(&programmer.layer(layer), layer.index, travel_speed);

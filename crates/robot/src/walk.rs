@@ -72,7 +72,7 @@ pub fn reach(cell: &Cell, place: PartPlace, track: &Track) -> Reach {
     let pairs: Vec<(&Stop, f64)> = track.stops.iter().zip(course.angles.iter().copied()).collect();
     let solved: Vec<Option<Joints>> =
         pairs.par_iter().map(|(stop, angle)| solve(&arm, &flange(stop, *angle), course.branch)).collect();
-    let room = Room::new(cell, &arm, &base_from_part);
+    let room = Room::new(cell, &arm, &base_from_part, track.bead_width);
     let mut walk = Walk { arm: &arm, before: None, room, findings: Findings::default() };
     let flange_from_tool = cell.flange_from_tool();
     let home = cell.home.map(|home| {
@@ -83,11 +83,11 @@ pub fn reach(cell: &Cell, place: PartPlace, track: &Track) -> Reach {
     if let (Some((from, way)), Some((first, _)), Some(Some(to))) = (&home, pairs.first(), solved.first()) {
         walk.home(way, *from, *to, Stop { leg: Leg::FromHome, ..**first });
     }
-    let mut at = None;
+    let mut before: Option<Stop> = None;
     let step = |((stop, angle), joints): (&(&Stop, f64), Option<Joints>)| {
         let pose = walk.step(stop, *angle, joints, Way::Line, || arm.beyond(&flange(stop, *angle)));
-        if let (Some(room), Some(from)) = (&mut walk.room, at.replace(stop.at).filter(|_| stop.arc)) {
-            room.lay(from, stop.at);
+        if let (Some(room), Some(from)) = (&mut walk.room, before.replace(**stop).filter(|_| stop.arc)) {
+            room.lay(&from, stop);
         }
         (**stop, pose)
     };
