@@ -3,6 +3,7 @@
 use crate::common::{beadwright, ok, refused};
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use tempfile::TempDir;
@@ -215,7 +216,8 @@ fn inspect_says_what_a_mesh_holds() {
     assert!(ok(folder.path(), &["inspect", "gear.stl"]).contains("closed and clean"));
 }
 
-/// Every model of the shared folder plans or is refused with one clear error.
+/// Every model of the shared folder plans or is refused with one clear error. Without judging, which takes longer than planning and
+/// refuses nothing.
 #[test]
 #[cfg_attr(no_models, ignore = "no shared models")]
 fn every_shared_model_plans_or_is_refused() {
@@ -224,7 +226,7 @@ fn every_shared_model_plans_or_is_refused() {
     let entries = fs::read_dir(&folder).expect("BEADWRIGHT_MODELS names the folder of shared models");
     let out = TempDir::new().unwrap();
     for path in entries.map(|e| fs::canonicalize(e.unwrap().path()).unwrap()) {
-        let output = beadwright(out.path(), &["plan", path.to_str().unwrap(), "-p", "plasma-304-cnc", "--json"]);
+        let output = beadwright(out.path(), &["plan", path.to_str().unwrap(), "-p", "plasma-304-cnc", "--no-deposit", "--json"]);
         let said = String::from_utf8_lossy(&output.stderr);
         match output.status.code() {
             Some(0) => {}
@@ -686,18 +688,34 @@ fn a_studio_beside_the_command_is_started() {
 #[test]
 fn a_large_plan_is_announced_before_it_is_made() {
     let folder = folder_with("cross");
-    let listed = |more: &[&str]| {
+    // What is printed before any layer is planned: the command is then stopped, since the plan takes minutes.
+    let announced = |more: &[&str]| {
         let arguments = [&["plan", "cross.stl", "-s", "zigzag", "--no-deposit"], more].concat();
-        let output = beadwright(folder.path(), &arguments);
-        assert!(output.status.success(), "{more:?}");
-        String::from_utf8(output.stderr).unwrap()
+        let mut command = Command::new(env!("CARGO_BIN_EXE_beadwright"));
+        command.current_dir(folder.path()).args(arguments).stderr(Stdio::piped()).stdout(Stdio::null());
+        let mut run = command.spawn().unwrap();
+        let lines = BufReader::new(run.stderr.take().unwrap()).lines();
+        let (sender, receiver) = std::sync::mpsc::channel();
+        std::thread::spawn(move || lines.map_while(Result::ok).try_for_each(|line| sender.send(line)));
+        let deadline = std::time::Instant::now() + std::time::Duration::from_secs(20);
+        let left = || deadline.saturating_duration_since(std::time::Instant::now());
+        let mut text = String::new();
+        while let Ok(line) = receiver.recv_timeout(left()) {
+            text.push_str(&line);
+            if text.contains("Ctrl-C") {
+                break;
+            }
+        }
+        run.kill().unwrap();
+        run.wait().unwrap();
+        text
     };
-    let large = listed(&["--set", "bead.width=0.2"]);
+    let large = announced(&["--set", "bead.width=0.2"]);
     for word in ["about 10 layers with 41 m of bead each, 0.4 km in all", "bead.width (0.2 mm)", "Ctrl-C"] {
         assert!(large.contains(word), "{large}");
     }
-    assert!(!listed(&[]).contains("are to be planned"), "a usual plan needs no words");
-    assert!(!listed(&["--set", "bead.width=0.2", "--quiet"]).contains("are to be planned"));
+    assert!(!announced(&[]).contains("are to be planned"), "a usual plan needs no words");
+    assert!(!announced(&["--set", "bead.width=0.2", "--quiet"]).contains("are to be planned"));
 }
 
 /// `check` reads a program as a welding programmer would; `plan` and `profile check` say what its templates would do.

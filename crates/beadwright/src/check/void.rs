@@ -7,7 +7,7 @@ pub(super) const CHECK: Check = Check {
     what: "layers with more void in the deposit model than check.max_void",
     why: "voids stay in the part as pores and lack of fusion",
     example: "layer 12: 4.10 % of the area stays empty; the limit is 3 %.",
-    remedy: "compare what other strategies leave, or use a smaller stepover or contour gap",
+    remedy: "choose a strategy that leaves less, or use a smaller stepover or contour gap",
     find,
 };
 

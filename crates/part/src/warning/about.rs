@@ -82,11 +82,11 @@ impl WarningKind {
                 "the strategy would have left the outline or crossed itself there, so another one fills the island, the best by the deposit model",
                 "check the picture of the layer, and use another strategy if it is not acceptable",
             ),
-            Self::Bare => ("bare", "beads do not reach part of an island", "compare what other strategies leave"),
+            Self::Bare => ("bare", "beads do not reach part of an island", "choose a strategy that leaves less"),
             Self::Undersize => (
                 "undersize",
                 "beads do not reach a corner of the preform, or leave a gap, and the part that is milled from it ends there",
-                "add stock (preform.side, preform.top, preform.bottom), or compare what other strategies leave",
+                "add stock (preform.side, preform.top, preform.bottom), or choose a strategy that leaves less",
             ),
             Self::Unsound => (
                 "unsound",
