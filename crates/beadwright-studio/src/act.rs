@@ -4,6 +4,7 @@ use crate::actions::Action;
 use crate::export::Export;
 use crate::heat;
 use crate::jobs::{self, Ask};
+use crate::level;
 use crate::studio::Studio;
 use crate::thumbnail::{self, thumbnail};
 use crate::view::Mode;
@@ -114,6 +115,7 @@ impl Studio {
             Action::DrawExample => self.draw_example(),
             Action::LookCloser => self.look_closer(),
             Action::Heat => self.begin_heat(),
+            Action::Level => self.begin_level(),
             Action::CloseScan => self.close_scan(),
             Action::TakeCell(name) => {
                 self.view.cell_chosen = true;
@@ -167,6 +169,15 @@ impl Studio {
     fn begin_heat(&mut self) {
         if let Some(profile) = self.plans.own.profile.clone() {
             self.jobs.heat_job = Some(heat::heat(&self.window.ctx, self.plans.own.layers.clone(), profile));
+        }
+    }
+
+    /// Computes how far layers lean from level.
+    fn begin_level(&mut self) {
+        let own = &self.plans.own;
+        if let Some(profile) = own.profile.clone() {
+            let (layers, drawn) = (own.layers.clone(), own.scene.layers().to_vec());
+            self.jobs.level_job = Some(level::level(&self.window.ctx, layers, drawn, profile));
         }
     }
 

@@ -101,6 +101,8 @@ pub enum Action {
     TakeCell(&'static str),
     /// Computes temperatures.
     Heat,
+    /// Computes how far layers lean from level.
+    Level,
     /// Computes what the robot can reach.
     Reach,
     /// Restores the project of a run that crashed.

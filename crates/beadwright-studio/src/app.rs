@@ -46,6 +46,20 @@ impl Studio {
             }
             None => {}
         }
+        match jobs::take(&mut self.jobs.level_job) {
+            Some(Ok(leans)) if leans.iter().any(|layer| !layer.is_empty()) => {
+                for (layer, leans) in leans.into_iter().enumerate() {
+                    self.plans.own.scene.set_leans(layer, leans);
+                }
+            }
+            // Nothing to show; do not try again.
+            Some(Ok(_)) => self.view.colour = Colour::Kind,
+            Some(Err(error)) => {
+                self.view.colour = Colour::Kind;
+                self.complain(error);
+            }
+            None => {}
+        }
         self.hear_of_scan();
         match jobs::take(&mut self.jobs.reach_job) {
             Some(Ok(Ok(reach))) => {

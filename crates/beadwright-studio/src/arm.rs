@@ -1,10 +1,21 @@
 //! The arm of the robot cell, in its pose with the torch at a place of the plan.
 
+use crate::holding;
 use crate::known::Known;
 use crate::view::ViewState;
-use crate::view3d::Stance;
+use crate::view3d::{LayerBeads, Stance};
+use beadwright::program::Held;
 use beadwright::robot::body::{Capsule, capsules};
 use beadwright::robot::{Cell, Joints, Reach, Stop};
+
+/// How far the torch has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Come {
+    /// A part of the way to the pass, 0 to 1.
+    Towards(f64),
+    /// Along the pass, mm.
+    Along(f64),
+}
 
 /// A place of the torch: the pass that it lays or comes to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,6 +24,8 @@ pub struct Place {
     pub layer: usize,
     /// The pass in its layer, from 0.
     pub pass: usize,
+    /// How far it has come.
+    pub come: Come,
     /// The torch.
     pub torch: Stance,
 }
@@ -38,7 +51,9 @@ pub fn stand(cell: &Cell, reach: &Reach, place: &Place) -> Option<Stand> {
     let far = |stop: &Stop| stop.at.distance_squared(place.torch.at);
     let (stop, pose) = reached.min_by(|a, b| far(a.0).total_cmp(&far(b.0)))?;
     let (arm, base_from_part) = (cell.arm(), reach.place.base_from_part());
-    let tool = Stop { at: place.torch.at, ..*stop }.tool(pose.torch_angle);
+    let turned = holding::attitude(&reach.poses, place).filter(|attitude| attitude.held.is_some());
+    let stop = Stop { at: place.torch.at, attitude: turned.unwrap_or(stop.attitude), ..*stop };
+    let tool = stop.tool(pose.torch_angle);
     let flange = base_from_part.then(&tool).then(&cell.flange_from_tool().inverse());
     let ways = arm.inverse(&flange);
     let (_, joints) = ways.into_iter().find(|(branch, _)| *branch == reach.branch)?;
@@ -52,27 +67,40 @@ pub fn stand(cell: &Cell, reach: &Reach, place: &Place) -> Option<Stand> {
     Some(Stand { joints, margin: arm.margins(&joints).least(), links: links.unwrap_or_default() })
 }
 
+impl LayerBeads {
+    /// The torch at a fraction (0 to 1) of the length of a segment of this layer, which is the one with that index.
+    fn place(&self, layer: usize, segment: usize, part: f64) -> Option<Place> {
+        let (pass, torch) = (self.pass_of(segment), self.beads().get(segment)?.torch(part));
+        Some(Place { layer, pass, come: Come::Along(self.laid(pass, segment, torch.at)), torch })
+    }
+}
+
 impl Known<'_> {
     /// Where the torch is: as it plays, at the chosen bead, or at the end of what is shown.
     pub(crate) fn torch_place(self, view: &ViewState) -> Option<Place> {
         let scene = &self.plans.own.scene;
         if view.torch.is_some() {
             let now = scene.at_time(view.seconds)?;
-            let beads = scene.layer(now.layer)?;
-            let pass = beads.pass_of(now.segment.min(beads.len().checked_sub(1)?));
-            return Some(Place { layer: now.layer, pass, torch: now.torch });
+            let laid = || scene.layer(now.layer).map(|beads| beads.laid(now.pass, now.segment, now.torch.at));
+            let come = now.come.map(Come::Towards).or_else(|| laid().map(Come::Along))?;
+            return Some(Place { layer: now.layer, pass: now.pass, come, torch: now.torch });
         }
         if let Some(chosen) = view.chosen.and_then(|chosen| self.pick(chosen)) {
             let beads = scene.layer(chosen.layer)?;
             let segments = beads.segments_of(beads.piece(chosen.segment));
-            let bead = beads.beads().get(segments.start.midpoint(segments.end))?;
-            return Some(Place { layer: chosen.layer, pass: chosen.pass, torch: bead.torch(0.5) });
+            let segment = segments.start.midpoint(segments.end);
+            return beads.place(chosen.layer, segment, 0.5);
         }
         let layer = view.last;
         let beads = scene.layer(layer)?;
         let shown = (view.progress * beads.len() as f64).round() as usize;
-        let bead = beads.beads().get(shown.max(1) - 1)?;
-        Some(Place { layer, pass: beads.pass_of(shown.max(1) - 1), torch: bead.torch(1.0) })
+        beads.place(layer, shown.max(1) - 1, 1.0)
+    }
+
+    /// How the part is held there; none where nothing turns it, or the robot is not shown.
+    pub(crate) fn held(self, view: &ViewState) -> Option<Held> {
+        let reach = self.jobs.reach.as_ref().filter(|_| view.robot)?;
+        holding::held(&reach.poses, &self.torch_place(view)?)
     }
 
     /// The pose of the arm there; none where it is not shown, not yet computed, or cannot get there.

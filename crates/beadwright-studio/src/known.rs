@@ -7,6 +7,7 @@ use crate::form::Parsed;
 use crate::heat::Temperatures;
 use crate::history::History;
 use crate::jobs::{Answer, Ask, Job};
+use crate::level::Leans;
 use crate::planner::Planner;
 use crate::project::Project;
 use crate::settings::{Settings, Store};
@@ -19,6 +20,7 @@ use crate::view3d::{Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
 use beadwright::chart::Chart;
 use beadwright::fill::StrategyName;
+use beadwright::program::PositionerAxis;
 use beadwright::robot::{Cell, Reach};
 use eframe::egui::{self, Context};
 use eframe::egui_wgpu::RenderState;
@@ -91,6 +93,7 @@ pub(crate) struct Jobs {
     /// The steps of the strategy in the layer in view.
     pub(crate) looked: Looked,
     pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
+    pub(crate) level_job: Option<Job<Leans>>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
     /// The cell that this is about.
@@ -109,6 +112,7 @@ impl Jobs {
     pub(crate) fn is_idle(&self) -> bool {
         let computes = self.reach_job.is_some()
             || self.heat_job.is_some()
+            || self.level_job.is_some()
             || self.scan_job.is_some()
             || self.scan_wanted.is_some();
         !computes && !self.looked.is_busy()
@@ -189,6 +193,13 @@ impl<'a> Known<'a> {
         let (low, high) = self.plans.own.part.as_ref()?.bounds();
         let (low, high) = (low.truncate() - plate.margin, high.truncate() + plate.margin);
         Some(Plate { low, high, thickness: plate.thickness })
+    }
+
+    /// The axes of the positioner, if there is one.
+    pub(crate) fn axes(self) -> &'a [PositionerAxis] {
+        let profile = self.plans.own.profile.as_ref();
+        let positioner = profile.and_then(|profile| profile.program.positioner.as_ref());
+        positioner.map_or(&[], |positioner| &positioner.axes)
     }
 
     /// A bead, given by its layer, its pass and its piece of the pass.

@@ -9,11 +9,11 @@
 //! | `app`, `act` | one frame of the window; carrying out actions |
 //! | [`project`], [`history`] | what the user works on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
-//! | [`jobs`], [`heat`], [`steps`] | other background work: reach, file dialogs; temperatures; the steps of strategies |
+//! | [`jobs`], [`heat`], [`level`], [`steps`] | other background work: reach, file dialogs; temperatures; how far layers lean; the steps of strategies |
 //! | [`compared`], `scan` | a scan of the built part compared with the part |
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
-//! | [`arm`] | the robot's pose with the torch at a place |
+//! | [`arm`], [`holding`] | the robot's pose with the torch at a place; how the part is held there |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `known` | window, project, plans, background work: what panels read; and what they can change |
@@ -37,8 +37,10 @@ pub mod fonts;
 pub mod form;
 pub mod heat;
 pub mod history;
+pub mod holding;
 pub mod jobs;
 mod known;
+pub mod level;
 mod panels;
 pub mod planner;
 mod process;

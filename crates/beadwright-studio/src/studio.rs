@@ -231,7 +231,7 @@ impl Studio {
         // Pending answers are about the previous plan.
         (self.jobs.reach, self.jobs.reach_job) = (None, None);
         self.jobs.looked.forget();
-        self.jobs.heat_job = None;
+        (self.jobs.heat_job, self.jobs.level_job) = (None, None);
         if self.project().source.is_none() {
             // Undo has led back to the empty window.
             self.plans.planner.cancel();

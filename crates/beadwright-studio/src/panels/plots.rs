@@ -1,12 +1,13 @@
-//! Plots: figures for every layer, measured beads, the robot's joints.
+//! Plots: figures for every layer, measured beads, the robot's joints and the positioner's axes.
 
-use super::{process, words};
+use super::{process, robot, words};
 use crate::actions::Action;
 use crate::jobs::Ask;
 use crate::known::{Known, Queue, View};
+use beadwright::program::PositionerAxis;
 use beadwright::report::{bead_window, plot as page};
-use beadwright::robot::Reach;
-use eframe::egui::{Rangef, Response, Ui};
+use beadwright::robot::{Pose, Reach, Stop};
+use eframe::egui::{Color32, Rangef, Response, Ui};
 use egui_plot::{AxisHints, HLine, Legend, Line, LineStyle, Plot, PlotPoints};
 
 /// Most points drawn for a curve.
@@ -14,6 +15,12 @@ const POINTS: usize = 2000;
 
 /// Spacing of the numbers on an axis in screen points, from barely visible to clear; the plots are small here.
 const SPACING: Rangef = Rangef { min: 25.0, max: 40.0 };
+
+/// The colours of the positioner's axes.
+const AXES: [Color32; 2] = [Color32::from_rgb(52, 132, 240), Color32::from_rgb(252, 168, 48)];
+
+/// Limits nearer than this to an angle are drawn, °.
+const HALF_TURN: f64 = 180.0;
 
 /// Height of a plot, points.
 const HEIGHT: f32 = 140.0;
@@ -103,18 +110,52 @@ fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
     let plot = Plot::new("joints").height(2.0 * HEIGHT).legend(Legend::default()).x_axis_label(known.t("axis-time"));
     plot.allow_scroll(false).show(ui, |plot| {
         for joint in 0..6 {
-            plot.line(Line::new(format!("J{}", joint + 1), joint_curve(reach, joint)));
+            let angle = |_: &Stop, pose: Option<&Pose>| Some(pose?.joints[joint]);
+            plot.line(Line::new(format!("J{}", joint + 1), PlotPoints::from(timed(reach, angle))));
+        }
+    });
+    positioner(known, reach, ui);
+}
+
+/// The angles of the positioner's axes, with their limits.
+fn positioner(known: Known<'_>, reach: &Reach, ui: &mut Ui) {
+    if known.axes().is_empty() {
+        return;
+    }
+    ui.label(known.t("plot-positioner"));
+    for (number, axis) in known.axes().iter().enumerate() {
+        ui.weak(format!("{}: {}", robot::axis_name(known, number), robot::limits(axis)));
+    }
+    let time = AxisHints::new_x().label(known.t("axis-time")).label_spacing(SPACING);
+    let plot = Plot::new("positioner").height(1.5 * HEIGHT).legend(Legend::default()).custom_x_axes(vec![time]);
+    let plot = plot.custom_y_axes(vec![AxisHints::new_y().label_spacing(SPACING)]);
+    plot.allow_scroll(false).show(ui, |plot| {
+        for (number, (axis, colour)) in known.axes().iter().zip(AXES).enumerate() {
+            let points = timed(reach, |stop, _| Some(stop.attitude.held?.angles[number]));
+            let name = robot::axis_name(known, number);
+            for limit in near_limits(axis, &points) {
+                plot.hline(HLine::new(name.clone(), limit).color(colour).style(LineStyle::dashed_loose()));
+            }
+            plot.line(Line::new(name, PlotPoints::from(points)).color(colour));
         }
     });
 }
 
-fn joint_curve(reach: &Reach, joint: usize) -> PlotPoints<'static> {
+/// The limits that can be drawn without flattening the curve.
+fn near_limits(axis: &PositionerAxis, points: &[[f64; 2]]) -> Vec<f64> {
+    let angles = points.iter().map(|point| point[1]);
+    let (least, most) = angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), angle| (a.min(angle), b.max(angle)));
+    let room = (most - least).max(HALF_TURN);
+    axis.limits.into_iter().filter(|limit| (least - room..=most + room).contains(limit)).collect()
+}
+
+/// A value over the time of the track.
+fn timed(reach: &Reach, value: impl Fn(&Stop, Option<&Pose>) -> Option<f64>) -> Vec<[f64; 2]> {
     let step = reach.poses.len().div_ceil(POINTS).max(1);
     let mut seconds = 0.0;
-    let timed = reach.poses.iter().map(|(stop, pose)| {
+    let points = reach.poses.iter().filter_map(|(stop, pose)| {
         seconds += stop.seconds;
-        (seconds, pose)
+        Some([seconds, value(stop, pose.as_ref())?])
     });
-    let points = timed.filter_map(|(seconds, pose)| Some([seconds, pose.as_ref()?.joints[joint]]));
-    points.step_by(step).collect::<Vec<_>>().into()
+    points.step_by(step).collect()
 }

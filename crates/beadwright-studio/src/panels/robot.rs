@@ -1,9 +1,10 @@
-//! The robot's arm in the 3-D view; its cell and its joints in one line.
+//! The robot's arm in the 3-D view; its cell, its joints and the axes of the positioner in one line.
 
 use super::process;
 use crate::actions::Action;
 use crate::known::{Known, Queue, View};
-use eframe::egui::Ui;
+use beadwright::program::PositionerAxis;
+use eframe::egui::{TextWrapMode, Ui};
 
 /// The switch that shows the arm; what it needs is computed in the background.
 pub(super) fn switch(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
@@ -25,11 +26,14 @@ pub(super) fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &
         return;
     }
     ui.horizontal_wrapped(|ui| {
+        // Lines break between angles, not within them.
+        ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
         process::cell(known, view, queue, ui);
         if known.jobs.reach.is_none() {
             ui.weak(known.t("reach-runs"));
             return;
         }
+        axes(known, view, ui);
         let Some(arm) = known.arm(view.state) else {
             ui.colored_label(ui.visuals().warn_fg_color, known.t("out-of-reach"));
             return;
@@ -39,4 +43,23 @@ pub(super) fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &
         }
         ui.weak(format!("{}: {:.1}°", known.t("margin-here"), arm.margin));
     });
+}
+
+/// The axes of the positioner as they are, and their limits.
+fn axes(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
+    let Some(held) = known.held(view.state) else { return };
+    for (number, (axis, angle)) in known.axes().iter().zip(held.angles).enumerate() {
+        ui.label(format!("{} {angle:.1}° ({})", axis_name(known, number), limits(axis)));
+    }
+}
+
+/// What an axis of the positioner is called, counted from 0.
+pub(super) fn axis_name(known: Known<'_>, axis: usize) -> String {
+    format!("{} {}", known.t("positioner-axis"), axis + 1)
+}
+
+/// The limits of an axis, °.
+pub(super) fn limits(axis: &PositionerAxis) -> String {
+    let [least, most] = axis.limits;
+    format!("{least:.0} … {most:.0}°")
 }

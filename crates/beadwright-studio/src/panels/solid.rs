@@ -2,14 +2,16 @@
 
 use super::{bead, place, robot, scan, section, stock};
 use crate::actions::Action;
+use crate::holding;
 use crate::known::{Known, Queue, View};
 use crate::view3d::{Colour, Pick, Style, face, palette};
 use beadwright::model::Placement;
+use beadwright::robot::Frame;
 use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
 use glam::DVec3;
 
 /// What the colours can show, with their texts.
-const COLOURS: [(Colour, &str); 7] = [
+const COLOURS: [(Colour, &str); 8] = [
     (Colour::Kind, "colour-kind"),
     (Colour::Order, "colour-order"),
     (Colour::Speed, "colour-speed"),
@@ -17,6 +19,7 @@ const COLOURS: [(Colour, &str); 7] = [
     (Colour::HeightError, "colour-height"),
     (Colour::Time, "colour-time"),
     (Colour::Temperature, "colour-temperature"),
+    (Colour::OffLevel, "colour-off-level"),
 ];
 
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
@@ -51,6 +54,7 @@ pub(super) fn picture(
     view.solid.caption = caption(known, view);
     view.solid.no_adapter = known.t("no-adapter").to_owned();
     view.solid.camera.orthographic = view.state.parallel;
+    view.solid.camera.held = known.held(view.state).as_ref().map_or(Frame::IDENTITY, holding::frame);
     let shown = view.solid.show(ui, known.window.render_state.as_ref(), &known.plans.own.scene, style, label);
     if view.state.laying {
         shown.sight.into_iter().for_each(|sight| lay(known, view, queue, sight));
@@ -96,6 +100,7 @@ pub(super) fn colours(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, 
     });
     combo.response.labelled_by(label.id);
     warm(known, view, queue, ui);
+    lean(known, view, queue, ui);
 }
 
 /// Has temperatures computed when they are to be shown and the plan has none.
@@ -108,6 +113,18 @@ fn warm(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
     let has = || known.plans.own.scene.value_range(Colour::Temperature).is_some();
     if view.state.colour == Colour::Temperature && known.plans.own.summary.is_some() && !has() {
         queue.push(Action::Heat);
+    }
+}
+
+/// Has leans computed when they are to be shown.
+fn lean(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    if known.jobs.level_job.is_some() {
+        ui.spinner();
+        return;
+    }
+    let has = || known.plans.own.scene.value_range(Colour::OffLevel).is_some();
+    if view.state.colour == Colour::OffLevel && known.plans.own.summary.is_some() && !has() {
+        queue.push(Action::Level);
     }
 }
 
@@ -133,6 +150,7 @@ fn legend(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
         Colour::Width => " mm",
         Colour::Time => " s",
         Colour::Temperature => " °C",
+        Colour::OffLevel => "°",
         Colour::HeightError => known.t("unit-bead-heights"),
         _ => "",
     };

@@ -50,6 +50,11 @@ impl Bead {
         self.to.into()
     }
 
+    /// Length, mm.
+    pub fn length(&self) -> f64 {
+        f64::from(self.from().distance(self.to()))
+    }
+
     /// Width, mm.
     pub fn width(&self) -> f32 {
         self.width.abs()
@@ -336,6 +341,15 @@ impl LayerBeads {
         }
         let before = |end: usize| self.pieces.partition_point(|other| (*other as usize) < end);
         before(piece)..before(piece + 1)
+    }
+
+    /// How much of a pass is laid with the torch at a place on one of its segments, mm; all of it beyond the last one.
+    pub fn laid(&self, pass: usize, segment: usize, at: DVec3) -> f64 {
+        let Some(of_pass) = self.passes.get(pass).map(|pass| pass.segments.clone()) else { return 0.0 };
+        let whole = of_pass.start..segment.clamp(of_pass.start, of_pass.end);
+        let here = self.beads.get(segment).filter(|_| of_pass.contains(&segment));
+        let begun = here.map_or(0.0, |bead| bead.from().as_dvec3().distance(at));
+        self.beads[whole].iter().map(Bead::length).sum::<f64>() + begun
     }
 
     /// How many pieces of the layer the first of its segments are part of.

@@ -1,5 +1,9 @@
 //! Where the eye is. The camera turns about a target, with z up.
+//!
+//! What is seen may be held otherwise than it lies, by a positioner. The eye stays where it is in the cell then; all that is asked
+//! of the camera is answered in the space of what is seen.
 
+use beadwright::robot::Frame;
 use glam::{DMat4, DVec2, DVec3};
 
 /// Half the angle of view from top to bottom: 17.5°.
@@ -31,7 +35,7 @@ pub enum StandardView {
 /// The eye. Sizes and positions in the picture are in screen points from its upper left corner, y down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// What it turns about, mm.
+    /// What it turns about, mm in the cell.
     pub target: DVec3,
     /// From the eye to the target, mm.
     pub distance: f64,
@@ -41,11 +45,14 @@ pub struct Camera {
     pub pitch: f64,
     /// Whether the projection is parallel.
     pub orthographic: bool,
+    /// How what is seen is held in the cell.
+    pub held: Frame,
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        let mut camera = Self { target: DVec3::ZERO, distance: 500.0, yaw: 0.0, pitch: 0.0, orthographic: false };
+        let (target, held) = (DVec3::ZERO, Frame::IDENTITY);
+        let mut camera = Self { target, distance: 500.0, yaw: 0.0, pitch: 0.0, orthographic: false, held };
         camera.set_view(StandardView::Iso);
         camera
     }
@@ -55,12 +62,12 @@ impl Camera {
     /// From the target to the eye, of length 1.
     pub fn back(&self) -> DVec3 {
         let (sin, cos) = self.pitch.sin_cos();
-        DVec3::new(cos * self.yaw.cos(), cos * self.yaw.sin(), sin)
+        self.seen(DVec3::new(cos * self.yaw.cos(), cos * self.yaw.sin(), sin))
     }
 
     /// To the right in the picture.
     pub fn right(&self) -> DVec3 {
-        DVec3::new(-self.yaw.sin(), self.yaw.cos(), 0.0)
+        self.seen(DVec3::new(-self.yaw.sin(), self.yaw.cos(), 0.0))
     }
 
     /// Up in the picture.
@@ -68,9 +75,24 @@ impl Camera {
         self.back().cross(self.right())
     }
 
+    /// Straight up in the cell.
+    pub fn sky(&self) -> DVec3 {
+        self.seen(DVec3::Z)
+    }
+
+    /// A direction of the cell.
+    fn seen(&self, way: DVec3) -> DVec3 {
+        self.held.rotation.conjugate() * way
+    }
+
+    /// The target, mm.
+    fn middle(&self) -> DVec3 {
+        self.held.inverse().apply(self.target)
+    }
+
     /// The eye, mm.
     pub fn eye(&self) -> DVec3 {
-        self.target + self.back() * self.distance
+        self.middle() + self.back() * self.distance
     }
 
     /// Height of the picture at the target, mm.
@@ -93,7 +115,7 @@ impl Camera {
 
     /// Where a point is seen; `None` behind the eye.
     pub fn project(&self, point: DVec3, size: DVec2) -> Option<DVec2> {
-        let from_target = point - self.target;
+        let from_target = point - self.middle();
         let depth = self.distance - from_target.dot(self.back());
         if !self.orthographic && depth <= 1e-6 * self.distance {
             return None;
@@ -117,7 +139,7 @@ impl Camera {
     pub fn unproject(&self, at: DVec2, size: DVec2) -> DVec3 {
         let scale = self.height() / size.y;
         let (x, y) = ((at.x - size.x / 2.0) * scale, (size.y / 2.0 - at.y) * scale);
-        self.target + self.right() * x + self.up() * y
+        self.middle() + self.right() * x + self.up() * y
     }
 
     /// Turns about the target, following a drag by that many points.
@@ -130,12 +152,13 @@ impl Camera {
     /// Moves so that the target follows a drag by that many points.
     pub fn pan(&mut self, drag: DVec2, size: DVec2) {
         let scale = self.height() / size.y;
-        self.target += (self.up() * drag.y - self.right() * drag.x) * scale;
+        self.target += self.held.rotation * ((self.up() * drag.y - self.right() * drag.x) * scale);
     }
 
     /// Moves `factor` times closer to a point, which keeps its position in the picture.
     pub fn zoom(&mut self, factor: f64, towards: DVec3) {
         let distance = (self.distance / factor).clamp(0.5, 1e6);
+        let towards = self.held.apply(towards);
         self.target = towards + (self.target - towards) * (distance / self.distance);
         self.distance = distance;
     }
@@ -164,7 +187,8 @@ impl Camera {
 
     /// Moves so that points (mm) fill the picture; the direction stays.
     pub fn fit_points(&mut self, points: &[DVec3], size: DVec2) {
-        let bounds = points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), &p| (a.min(p), b.max(p)));
+        let in_cell = points.iter().map(|&p| self.held.apply(p));
+        let bounds = in_cell.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
         if !(bounds.0 + bounds.1).is_finite() {
             return;
         }
@@ -184,8 +208,9 @@ impl Camera {
     /// The least distance at which all points are in the picture, mm.
     fn distance_to_see(&self, points: &[DVec3], size: DVec2) -> f64 {
         let tan = DVec2::new(size.x / size.y, 1.0) * HALF_VIEW_TAN * FILL;
+        let middle = self.middle();
         let needed = points.iter().map(|&point| {
-            let p = point - self.target;
+            let p = point - middle;
             let across = (p.dot(self.right()).abs() / tan.x).max(p.dot(self.up()).abs() / tan.y);
             across + if self.orthographic { 0.0 } else { p.dot(self.back()) }
         });

@@ -23,6 +23,8 @@ pub struct Scene {
     values: Vec<Option<Values>>,
     /// By pass, where the plan does not have them.
     temperatures: Vec<Option<Values>>,
+    /// By segment.
+    leans: Vec<Option<Values>>,
     scan: Option<Scanned>,
     version: u64,
     mesh_version: u64,
@@ -41,12 +43,16 @@ fn side_normal(side: usize) -> DVec2 {
 pub struct Position {
     /// The layer, from 0.
     pub layer: usize,
+    /// The pass in its layer, from 0.
+    pub pass: usize,
     /// The segment being laid or to be laid next, which is also the number of segments of the layer already laid.
     pub segment: usize,
     /// The torch.
     pub torch: Stance,
     /// Whether the arc is on.
     pub arc: bool,
+    /// How much of the way to the pass is behind it, 0 to 1; none once it is there.
+    pub come: Option<f64>,
 }
 
 impl Scene {
@@ -61,6 +67,7 @@ impl Scene {
         self.layers.clear();
         self.values.clear();
         self.temperatures.clear();
+        self.leans.clear();
         self.version = fresh_id();
     }
 
@@ -82,8 +89,9 @@ impl Scene {
         self.layers.resize(count, None);
         self.values.resize(count, None);
         self.temperatures.resize(count, None);
+        self.leans.resize(count, None);
         self.layers[index] = Some(beads);
-        (self.values[index], self.temperatures[index]) = (None, None);
+        (self.values[index], self.temperatures[index], self.leans[index]) = (None, None, None);
         self.version = fresh_id();
     }
 
@@ -99,6 +107,14 @@ impl Scene {
     pub fn set_temperatures(&mut self, index: usize, temperatures: Arc<[f32]>) {
         if let Some(place) = self.temperatures.get_mut(index) {
             *place = Some(Values { id: fresh_id(), of: temperatures });
+            self.version = fresh_id();
+        }
+    }
+
+    /// Sets how far an existing layer leans from level in each of its segments, °; NaN where it is not known.
+    pub fn set_leans(&mut self, index: usize, leans: Arc<[f32]>) {
+        if let Some(place) = self.leans.get_mut(index) {
+            *place = Some(Values { id: fresh_id(), of: leans });
             self.version = fresh_id();
         }
     }
@@ -134,6 +150,10 @@ impl Scene {
 
     pub(super) fn temperatures(&self, index: usize) -> Option<&Values> {
         self.temperatures.get(index)?.as_ref()
+    }
+
+    pub(super) fn leans(&self, index: usize) -> Option<&Values> {
+        self.leans.get(index)?.as_ref()
     }
 
     pub(super) fn version(&self) -> u64 {
@@ -250,6 +270,11 @@ impl Scene {
                 let range = all.map(f64::from).map(|t| (t, t)).reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
                 range.map(|(low, high)| (low, high.max(low + 1.0)))
             }
+            Colour::OffLevel => {
+                let leans = self.leans.iter().flatten().flat_map(|leans| leans.of.iter().copied());
+                let most = leans.filter(|lean| lean.is_finite()).reduce(f32::max)?;
+                Some((0.0, f64::from(most.max(1.0))))
+            }
             Colour::HeightError => {
                 let values = self.values.iter().flatten().flat_map(|values| values.of.iter());
                 let most = values.filter(|v| v.is_finite()).fold(0.0_f32, |most, v| most.max(v.abs()));
@@ -262,10 +287,13 @@ impl Scene {
 fn position(index: usize, layer: &LayerBeads, seconds: f64) -> Option<Position> {
     let number = layer.passes().partition_point(|p| p.end <= seconds).min(layer.passes().len().checked_sub(1)?);
     let pass = layer.passes().get(number)?;
-    let at = |segment: usize, torch: Stance, arc: bool| Some(Position { layer: index, segment, torch, arc });
+    let at = |segment: usize, torch: Stance, arc: bool| {
+        Some(Position { layer: index, pass: number, segment, torch, arc, come: None })
+    };
     if seconds < pass.arrival && !pass.travel.is_empty() {
         let part = (seconds - pass.travel_start) / (pass.arrival - pass.travel_start);
-        return at(pass.segments.start, along(&pass.travel, part)?, false);
+        let on_way = at(pass.segments.start, along(&pass.travel, part)?, false);
+        return on_way.map(|position| Position { come: Some(part), ..position });
     }
     let ends = &layer.ends[pass.segments.clone()];
     let segment = pass.segments.start + ends.partition_point(|&end| f64::from(end) <= seconds);

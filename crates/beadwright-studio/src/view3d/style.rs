@@ -25,6 +25,8 @@ pub enum Colour {
     Time,
     /// The temperature of the metal where the pass begins, °C.
     Temperature,
+    /// How far the layer leans from level there, as the part is held, °.
+    OffLevel,
 }
 
 /// The plate on which the part is built; its top is z = 0.

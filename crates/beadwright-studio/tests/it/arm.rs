@@ -5,7 +5,7 @@ use beadwright::profile::Profile;
 use beadwright::robot::body::Solid;
 use beadwright::robot::{self, Cell};
 use beadwright::task::Task;
-use beadwright_studio::arm::{Place, stand};
+use beadwright_studio::arm::{Come, Place, stand};
 use beadwright_studio::view3d::Stance;
 use glam::DVec3;
 
@@ -25,7 +25,8 @@ fn the_wire_tip_of_every_arm_is_at_the_bead() {
             for (pass, of) in layer.passes.iter().enumerate() {
                 for segment in of.segments().step_by(7) {
                     let at = (segment.from + segment.to) / 2.0;
-                    let place = Place { layer: layer.index, pass, torch: Stance::upright(at) };
+                    let (come, torch) = (Come::Along(0.0), Stance::upright(at));
+                    let place = Place { layer: layer.index, pass, come, torch };
                     let Some(found) = stand(&cell, &reach, &place) else { continue };
                     stood += 1;
                     // Forward kinematics, along the torch to the wire's tip.
@@ -51,5 +52,6 @@ fn no_arm_is_shown_where_there_is_no_pass() {
     let profile = Profile::built_in("cmt-al2319-kuka").unwrap();
     let cell = Cell::built_in("kuka-kr20-r1810").unwrap();
     let reach = robot::reach(&cell, cell.part, &profile.track::<beadwright::layer::Layer>(&[]));
-    assert_eq!(stand(&cell, &reach, &Place { layer: 0, pass: 0, torch: Stance::upright(DVec3::ZERO) }), None);
+    let (come, torch) = (Come::Towards(0.5), Stance::upright(DVec3::ZERO));
+    assert_eq!(stand(&cell, &reach, &Place { layer: 0, pass: 0, come, torch }), None);
 }

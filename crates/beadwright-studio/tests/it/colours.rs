@@ -20,8 +20,9 @@ fn everybody_can_tell_kinds_and_marks_apart() {
 
 #[test]
 fn everybody_can_tell_the_quarters_of_every_scale_apart() {
-    let scales = [Colour::Order, Colour::Speed, Colour::Width, Colour::HeightError, Colour::Time, Colour::Temperature];
-    for (scale, dark) in scales.into_iter().flat_map(|scale| [(scale, false), (scale, true)]) {
+    let scales = [Colour::Order, Colour::Speed, Colour::Width, Colour::HeightError, Colour::Time];
+    let scales = scales.into_iter().chain([Colour::Temperature, Colour::OffLevel]);
+    for (scale, dark) in scales.flat_map(|scale| [(scale, false), (scale, true)]) {
         let stops: Vec<palette::Rgb> = (0..=4).map(|i| palette::at(scale, f64::from(i) / 4.0, dark)).collect();
         for (number, sight) in SIGHTS.iter().enumerate() {
             for (i, a) in stops.iter().enumerate() {

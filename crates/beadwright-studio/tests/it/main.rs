@@ -7,6 +7,7 @@ mod colours;
 mod contrast;
 mod docs;
 mod heat;
+mod holding;
 mod project;
 mod section;
 #[path = "../../../beadwright/tests/it/sight/mod.rs"]

@@ -31,7 +31,7 @@ fn scene(plan: &Plan, profile: &Profile) -> Scene {
 }
 
 /// An example as it is meant to be welded, and its scene.
-fn planned(name: &str) -> (Plan, Profile, Scene) {
+pub(crate) fn planned(name: &str) -> (Plan, Profile, Scene) {
     let (mesh, profile) = (example::find(name).unwrap().mesh(), profile(name));
     let plan = plan(name, &mesh, &profile, &Task::default()).unwrap();
     let mut scene = scene(&plan, &profile);
@@ -149,7 +149,7 @@ fn the_torch_goes_on_without_leaps_from_body_to_body() {
 }
 
 /// Points on the tops of beads that nothing hides from a camera, with their layer and segment; those of the last layers first.
-fn seen<'a>(scene: &'a Scene, camera: &'a Camera) -> impl Iterator<Item = (usize, usize, DVec3)> + 'a {
+pub(crate) fn seen<'a>(scene: &'a Scene, camera: &'a Camera) -> impl Iterator<Item = (usize, usize, DVec3)> + 'a {
     let layers = scene.layers().iter().enumerate().rev().filter_map(|(i, layer)| Some((i, layer.as_ref()?)));
     let tops = layers.flat_map(|(i, layer)| layer.beads().iter().enumerate().map(move |(k, bead)| (i, k, bead)));
     tops.step_by(2).filter(|(.., bead)| bead.up().as_dvec3().dot(camera.back()) > 0.99).filter_map(|(i, k, bead)| {

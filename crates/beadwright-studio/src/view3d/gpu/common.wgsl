@@ -22,6 +22,8 @@ struct Globals {
     accent: vec4<f32>,
     // Normal and offset of the section: what lies beyond is cut away.
     section: vec4<f32>,
+    // Straight up in the cell.
+    sky: vec4<f32>,
     // Colours of all that is no bead.
     roles: array<vec4<f32>, 11>,
 }
@@ -59,7 +61,7 @@ fn nudged(clip: vec4<f32>, steps: f32) -> vec4<f32> {
 
 fn shaded(colour: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
     let direct = max(dot(normal, globals.light.xyz), 0.0);
-    let sky = 0.5 + 0.5 * normal.z;
+    let sky = 0.5 + 0.5 * dot(normal, globals.sky.xyz);
     let gloss = pow(max(dot(normal, globals.gloss.xyz), 0.0), 28.0);
     // A weak light from the viewer, so that nothing that is seen is black.
     let fill = max(dot(normal, globals.back.xyz), 0.0);

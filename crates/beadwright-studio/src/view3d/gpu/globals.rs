@@ -35,6 +35,7 @@ pub(super) struct Globals {
     missing: [f32; 4],
     pub accent: [f32; 4],
     section: [f32; 4],
+    sky: [f32; 4],
     roles: [[f32; 4]; ROLES],
 }
 
@@ -70,6 +71,7 @@ impl Globals {
             missing: rgba(palette::missing(style.dark), 1.0),
             accent: [0.0; 4],
             section: section(style),
+            sky: camera.sky().extend(0.0).as_vec4().into(),
             roles: roles(style.dark),
         }
     }

@@ -178,7 +178,7 @@ impl Gpu {
                 ..Default::default()
             });
             pass.set_bind_group(0, &self.bindings[0], &[]);
-            let (from_above, solid_vertices) = (camera.pitch > 0.0, solids.len() as u32);
+            let (from_above, solid_vertices) = (camera.back().z > 0.0, solids.len() as u32);
             Shot { gpu: self, pipelines, scene, style, quality, from_above, solid_vertices }.draw(&mut pass);
         }
         self.queue.submit([encoder.finish()]);

@@ -32,6 +32,7 @@ pub(super) fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, c
             let supplied = match colour {
                 Colour::HeightError => scene.values(slot.layer),
                 Colour::Temperature => scene.temperatures(slot.layer),
+                Colour::OffLevel => scene.leans(slot.layer),
                 _ => None,
             };
             let key = ValueKey {
@@ -78,16 +79,19 @@ impl Run {
     }
 }
 
+/// A supplied value, where there is one.
+fn known(supplied: Option<&[f32]>, index: usize) -> f32 {
+    supplied.and_then(|values| values.get(index)).copied().filter(|value| value.is_finite()).unwrap_or(MISSING)
+}
+
 fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: &mut Vec<f32>) {
     match key.colour {
         Colour::Speed => out.extend(&layer.speeds),
         Colour::Width => out.extend(layer.beads.iter().map(|bead| bead.width())),
         Colour::Order => out.extend((0..layer.len()).map(|i| (key.segments_before + i) as f32)),
         Colour::Time => out.extend(layer.ends.iter().map(|&end| (key.seconds_before + f64::from(end)) as f32)),
-        Colour::HeightError => out.extend((0..layer.len()).map(|i| {
-            let value = supplied.and_then(|values| values.get(layer.piece(i))).copied().unwrap_or(MISSING);
-            if value.is_finite() { value } else { MISSING }
-        })),
+        Colour::HeightError => out.extend((0..layer.len()).map(|i| known(supplied, layer.piece(i)))),
+        Colour::OffLevel => out.extend((0..layer.len()).map(|i| known(supplied, i))),
         Colour::Temperature => {
             for (i, pass) in layer.passes().iter().enumerate() {
                 let known = pass.temperature.or_else(|| supplied?.get(i).copied());
