@@ -1,34 +1,12 @@
 //! The arm of the robot cell, in its pose with the torch at a place of the plan.
 
-use crate::holding;
+use crate::holding::{self, Come, Place};
 use crate::known::Known;
 use crate::view::ViewState;
-use crate::view3d::{LayerBeads, Stance};
+use crate::view3d::LayerBeads;
 use beadwright::program::Held;
 use beadwright::robot::body::{Capsule, capsules};
 use beadwright::robot::{Cell, Joints, Reach, Stop};
-
-/// How far the torch has come.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Come {
-    /// A part of the way to the pass, 0 to 1.
-    Towards(f64),
-    /// Along the pass, mm.
-    Along(f64),
-}
-
-/// A place of the torch: the pass that it lays or comes to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
-    /// The layer, from 0.
-    pub layer: usize,
-    /// The pass in its layer, from 0.
-    pub pass: usize,
-    /// How far it has come.
-    pub come: Come,
-    /// The torch.
-    pub torch: Stance,
-}
 
 /// An arm at a place.
 #[derive(Debug, Clone, PartialEq)]

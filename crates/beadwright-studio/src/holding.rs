@@ -1,6 +1,6 @@
 //! How a positioner or a table holds the part with the torch at a place of the plan.
 
-use crate::arm::{Come, Place};
+use crate::view3d::Stance;
 use beadwright::program::{Attitude, Held};
 use beadwright::robot::{Frame, Pose, Stop};
 use glam::DVec3;
@@ -8,6 +8,28 @@ use std::ops::RangeInclusive;
 
 /// How much a millimetre along the pass counts as one beside it: it tells the end of a ring from its start.
 const ALONG: f64 = 0.1;
+
+/// How far the torch has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Come {
+    /// A part of the way to the pass, 0 to 1.
+    Towards(f64),
+    /// Along the pass, mm.
+    Along(f64),
+}
+
+/// A place of the torch: the pass that it lays or comes to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Place {
+    /// The layer, from 0.
+    pub layer: usize,
+    /// The pass in its layer, from 0.
+    pub pass: usize,
+    /// How far it has come.
+    pub come: Come,
+    /// The torch.
+    pub torch: Stance,
+}
 
 /// The stops of a track, with the poses of the arm there.
 type Poses = [(Stop, Option<Pose>)];

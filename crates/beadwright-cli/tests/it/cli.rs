@@ -226,7 +226,8 @@ fn every_shared_model_plans_or_is_refused() {
     let entries = fs::read_dir(&folder).expect("BEADWRIGHT_MODELS names the folder of shared models");
     let out = TempDir::new().unwrap();
     for path in entries.map(|e| fs::canonicalize(e.unwrap().path()).unwrap()) {
-        let output = beadwright(out.path(), &["plan", path.to_str().unwrap(), "-p", "plasma-304-cnc", "--no-deposit", "--json"]);
+        let output =
+            beadwright(out.path(), &["plan", path.to_str().unwrap(), "-p", "plasma-304-cnc", "--no-deposit", "--json"]);
         let said = String::from_utf8_lossy(&output.stderr);
         match output.status.code() {
             Some(0) => {}

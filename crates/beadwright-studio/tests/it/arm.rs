@@ -5,7 +5,8 @@ use beadwright::profile::Profile;
 use beadwright::robot::body::Solid;
 use beadwright::robot::{self, Cell};
 use beadwright::task::Task;
-use beadwright_studio::arm::{Come, Place, stand};
+use beadwright_studio::arm::stand;
+use beadwright_studio::holding::{Come, Place};
 use beadwright_studio::view3d::Stance;
 use glam::DVec3;
 

@@ -43,7 +43,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
         &[
             &["arm"],
             &["body", "chain", "opw", "track"],
-            &["arm_table", "finding", "home", "turn"],
+            &["arm_table", "finding", "home", "metal", "turn"],
             &["urdf"],
             &["error"],
             &["arm_keys"],

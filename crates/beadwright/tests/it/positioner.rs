@@ -212,6 +212,19 @@ fn a_torch_that_cannot_turn_welds_the_planned_path_on_a_part_that_does() {
         let length: f64 = welds.iter().flat_map(|weld| weld.points.windows(2)).map(|p| distance(p[0], p[1])).sum();
         assert!((own / length - 1.0).abs() < 1e-3, "{case}: {own} mm read, {length} mm welded");
         assert_eq!(program.notes, Vec::<String>::new(), "{case}");
+        // In the words of Siemens it says the same.
+        let mut siemens = turned.clone();
+        let own = siemens.dialects.gcode.as_mut().unwrap().positioner.as_mut().unwrap();
+        own.axes.iter_mut().for_each(|axis| axis.push('='));
+        (own.tcp_on[0], own.tcp_off[0]) = ("TRAORI".to_owned(), "TRAFOOF".to_owned());
+        let other = dialect::write("gcode", &layers, &siemens.job("demo")).unwrap().into_values().next().unwrap();
+        let again = dialect::read(&other, &mut |_| None, &reading::Options::default()).unwrap();
+        assert_eq!(again.notes, Vec::<String>::new(), "{case}");
+        for (layer, other) in program.layers().iter().zip(again.layers()) {
+            assert_eq!(*layer, other, "{case}");
+        }
+        let translated = other.replace("=", "").replace("TRAORI", "M428").replace("TRAFOOF", "M429");
+        assert_eq!(translated, text.replace("=", ""), "{case}");
     }
 }
 
@@ -254,7 +267,7 @@ fn moves(canon: &str) -> Vec<Move> {
             ("STRAIGHT_TRAVERSE" | "STRAIGHT_FEED", &[x, y, z, a, b, c, ..]) => {
                 moves.push(Move { burns, tip, to: [x, y, z, a, b, c] })
             }
-            ("SET_AUX_OUTPUT_VALUE", &[output, value]) if output == 3.0 => tip = value == 1.0,
+            ("SET_AUX_OUTPUT_VALUE", &[3.0, value]) => tip = value == 1.0,
             ("START_SPINDLE_CLOCKWISE", _) => burns = true,
             ("STOP_SPINDLE_TURNING", _) => burns = false,
             _ => {}

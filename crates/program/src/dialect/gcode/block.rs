@@ -114,7 +114,9 @@ impl Block {
     /// Reads the word whose letter was just passed. False: the rest of the line is ignored; `None`: the word is
     /// malformed.
     fn word(&mut self, letter: u8, line: &[u8], i: &mut usize) -> Option<bool> {
-        let start = *i + line[*i..].iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
+        let mut start = *i + line[*i..].iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
+        // Siemens writes `A=30` where a name could go on.
+        start += usize::from(line.get(start) == Some(&b'='));
         let digits = line[start..].iter().take_while(|b| matches!(b, b'0'..=b'9' | b'.' | b'+' | b'-')).count();
         if digits == 0 {
             let ends = line.get(start).is_none_or(|b| b.is_ascii_alphabetic() || b"\r;(*".contains(b));

@@ -34,12 +34,12 @@ pub(super) struct Branches {
     target: Option<String>,
 }
 
-/// A line without its N number, where it sets a parameter or shifts what follows.
+/// A line without its N number, where it sets a parameter or begins with a word of Siemens that no block has.
 pub(super) fn without_number(line: &[u8]) -> &[u8] {
     let Some(rest) = line.strip_prefix(b"N").or_else(|| line.strip_prefix(b"n")) else { return line };
     let digits = rest.iter().take_while(|b| b.is_ascii_digit()).count();
     let behind = rest[digits..].trim_ascii_start();
-    let own = behind.starts_with(b"#") || behind.starts_with(b"TRANS");
+    let own = [&b"#"[..], b"TRANS", b"TRAORI", b"TRAFOOF"].into_iter().any(|word| behind.starts_with(word));
     if digits > 0 && own { behind } else { line }
 }
 

@@ -52,7 +52,8 @@ impl Extra {
             ),
             Self::Chart => (
                 "layers.chart",
-                "Only robots turn their torch to layers that are not level: choose a robot's post, or leave layers.chart out.",
+                "Only robots turn their torch to layers that are not level, and CNC controls the part under it (gcode.positioner): choose \
+                 another post, or leave layers.chart out.",
             ),
         }
     }
