@@ -228,6 +228,21 @@ fn a_torch_that_cannot_turn_welds_the_planned_path_on_a_part_that_does() {
     }
 }
 
+/// A program that can begin at any pass turns the part from its beginning as one that cannot.
+#[test]
+fn a_machine_turns_the_part_alike_where_programs_can_begin_anywhere() {
+    let (layers, plain) = planned("y-tube");
+    let positioner = tilting(Turning::Index);
+    let mut profile = machine(&plain, &positioner, &["A", "C"]);
+    let welds = |profile: &Profile| {
+        let files = dialect::write("gcode", &layers, &profile.job("demo")).unwrap();
+        readers::gcode::run(&files.into_values().next().unwrap(), 3, 5).welds
+    };
+    let once = welds(&profile);
+    profile.program.restart = true;
+    assert!(once == welds(&profile));
+}
+
 /// Places of X, Y, Z, A, B, C, and LinuxCNC's own joints for them; `BEADWRIGHT_LINUXCNC_KINEMATICS` is the program that
 /// `benches/linuxcnc.sh` builds, followed by the folder of LinuxCNC's modules.
 fn joints(module: &str, places: &[[f64; 6]]) -> Vec<[f64; 5]> {

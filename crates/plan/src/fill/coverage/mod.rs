@@ -15,7 +15,7 @@ const ROWS: [f64; 2] = [6.0, 12.0];
 /// They may be too few where more than this part of a region is bare, since strips thinner than their distance then matter,
 const MUCH: f64 = 0.03;
 /// and they are if every other one finds more or less than the others by this part of the region.
-const APART: f64 = 0.001;
+const UNSURE: f64 = 0.001;
 /// The rows are slanted, radians, since beads or edges along them would be counted in whole rows: at the first of these angles
 /// at which they measure the region itself [`WELL`] and none of its edges runs along them, or at the best one. Few of them lie
 /// along the edges of the same regular polygon.
@@ -127,7 +127,7 @@ impl Coverage {
         let found = Self::on_rows(paths, region, coarse)?;
         let area = region.area();
         let [even, odd] = found.bare_by_rows();
-        let is_fine = even + odd < MUCH * area || (even - odd).abs() < APART * area;
+        let is_fine = even + odd < MUCH * area || (even - odd).abs() < UNSURE * area;
         if is_fine { Some(found) } else { Self::on_rows(paths, region, fine) }
     }
 

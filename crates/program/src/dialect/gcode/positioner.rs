@@ -78,7 +78,7 @@ pub(super) struct Axes {
     standing: DQuat,
     /// How the part is to be held from the next move on.
     pub(super) held: Option<Held>,
-    /// The angles written last, °; `None` where they are not known.
+    /// See [`written`](Axes::written).
     written: Option<[f64; 2]>,
 }
 
@@ -129,8 +129,13 @@ impl Axes {
         self.written = Some(wanted);
     }
 
-    /// From here on nothing is known about the axes.
-    pub(super) fn forget(&mut self) {
-        self.written = None;
+    /// The angles written last, °; `None` where they are not known.
+    pub(super) fn written(&self) -> Option<[f64; 2]> {
+        self.written
+    }
+
+    /// The axes are at these angles, °; `None` where nothing is known about them.
+    pub(super) fn stand(&mut self, at: Option<[f64; 2]>) {
+        self.written = at;
     }
 }

@@ -285,7 +285,7 @@ impl Syntax for CncGcode {
         if let Some(end) = self.open.pop() {
             self.plain(text, &end);
             (self.at, self.feed) = (None, 0.0);
-            self.axes.iter_mut().for_each(Axes::forget);
+            self.axes.iter_mut().for_each(|axes| axes.stand(None));
         }
     }
 
@@ -302,19 +302,21 @@ impl Syntax for CncGcode {
                 (begin, vec![format!("O{word} else")], format!("O{word} endif"))
             }
         };
-        let standing = (self.at, self.feed);
+        let standing = (self.at, self.feed, self.axes.as_ref().and_then(Axes::written));
         self.plain(text, &begin);
         self.approach(text, above);
         self.plain(text, &control.reset());
         between.iter().for_each(|line| self.plain(text, line));
-        (self.at, self.feed) = standing;
+        let written;
+        (self.at, self.feed, written) = standing;
+        self.axes.iter_mut().for_each(|axes| axes.stand(written));
         self.open.push(end);
     }
 
     /// The machine may be anywhere at first: to the safe height, across, and down. What turns the part turns it at that height.
     fn approach(&mut self, text: &mut String, to: DVec3) {
         self.switch_tcp(text, false);
-        self.axes.iter_mut().for_each(Axes::forget);
+        self.axes.iter_mut().for_each(|axes| axes.stand(None));
         let place = self.axes.as_ref().map_or(to, |axes| axes.in_machine(to));
         let safe = self.gcode.safe_z.max(place.z);
         self.begin_block(text);
