@@ -2,7 +2,7 @@
 
 use crate::view3d::Stance;
 use beadwright::program::{Attitude, Held};
-use beadwright::robot::{Frame, Pose, Stop};
+use beadwright::robot::{Pose, Stop};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
@@ -37,11 +37,6 @@ type Poses = [(Stop, Option<Pose>)];
 /// How the part is held with the torch at a place; none where nothing turns it.
 pub fn held(poses: &Poses, place: &Place) -> Option<Held> {
     attitude(poses, place)?.held
-}
-
-/// Where a part lies that is held so.
-pub fn frame(held: &Held) -> Frame {
-    Frame { position: held.shift, rotation: held.turn }
 }
 
 /// The attitude of torch and part with the torch at a place.

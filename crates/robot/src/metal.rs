@@ -8,8 +8,6 @@ use std::collections::HashMap;
 const VOXEL_MM: f64 = 5.0;
 /// Edge of a block, in voxels.
 const EDGE: i32 = 8;
-/// Balls of a bead lie this far apart, in their radii.
-const APART: f64 = 1.0;
 
 /// Beads as balls that touch their tops from below, all of one size.
 pub(crate) struct Metal {
@@ -30,9 +28,8 @@ impl Metal {
     /// Lays a bead between two places of its top, mm, on layers with these normals.
     pub(crate) fn lay(&mut self, places: [DVec3; 2], normals: [DVec3; 2]) {
         let [from, to] = [0, 1].map(|k| places[k] - normals[k] * self.radius);
-        let step = (APART * self.radius).max(1e-3);
-        // No part needs more.
-        let count = (from.distance(to) / step).ceil().clamp(1.0, 1e4) as usize;
+        // Balls lie a radius apart; no part needs more.
+        let count = (from.distance(to) / self.radius.max(1e-3)).ceil().clamp(1.0, 1e4) as usize;
         for k in 0..=count {
             self.add(from.lerp(to, k as f64 / count as f64));
         }

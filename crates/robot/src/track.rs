@@ -2,7 +2,7 @@
 
 use crate::{Frame, part_from_tool};
 use bead_plan::layer::Layer;
-use bead_program::program::{Attitude, Instruction, LayerProgram, Programmer};
+use bead_program::program::{Attitude, Held, Instruction, LayerProgram, Programmer};
 use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Borrow;
@@ -43,7 +43,14 @@ impl Stop {
 
     /// Where the part lies as a table or a positioner holds it here.
     pub fn turned_table(&self) -> Frame {
-        self.attitude.held.map_or(Frame::IDENTITY, |held| Frame { position: held.shift, rotation: held.turn })
+        self.attitude.held.map_or(Frame::IDENTITY, Frame::from)
+    }
+}
+
+/// Where a part lies that is held so.
+impl From<Held> for Frame {
+    fn from(held: Held) -> Self {
+        Self { position: held.shift, rotation: held.turn }
     }
 }
 

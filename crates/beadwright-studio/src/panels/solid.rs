@@ -2,7 +2,6 @@
 
 use super::{bead, place, robot, scan, section, stock};
 use crate::actions::Action;
-use crate::holding;
 use crate::known::{Known, Queue, View};
 use crate::view3d::{Colour, Pick, Style, face, palette};
 use beadwright::model::Placement;
@@ -54,7 +53,7 @@ pub(super) fn picture(
     view.solid.caption = caption(known, view);
     view.solid.no_adapter = known.t("no-adapter").to_owned();
     view.solid.camera.orthographic = view.state.parallel;
-    view.solid.camera.held = known.held(view.state).as_ref().map_or(Frame::IDENTITY, holding::frame);
+    view.solid.camera.held = known.held(view.state).map_or(Frame::IDENTITY, Frame::from);
     let shown = view.solid.show(ui, known.window.render_state.as_ref(), &known.plans.own.scene, style, label);
     if view.state.laying {
         shown.sight.into_iter().for_each(|sight| lay(known, view, queue, sight));

@@ -8,8 +8,8 @@ use beadwright::program::{Positioner, PositionerAxis, Turning};
 use beadwright::robot::body::Solid;
 use beadwright::robot::{self, Cell, Frame, Reach};
 use beadwright_studio::arm::stand;
+use beadwright_studio::holding::held;
 use beadwright_studio::holding::{Come, Place};
-use beadwright_studio::holding::{frame, held};
 use beadwright_studio::level::leans;
 use beadwright_studio::view3d::{Camera, Colour, Scene, StandardView, Style, View3d, face, headless, palette, pick};
 use glam::{DQuat, DVec2, DVec3};
@@ -66,7 +66,7 @@ impl Held {
     }
 
     fn frame(&self, place: &Place) -> Frame {
-        frame(&held(&self.reach.poses, place).unwrap())
+        Frame::from(held(&self.reach.poses, place).unwrap())
     }
 }
 
@@ -281,7 +281,7 @@ fn pictures() {
                     ..Style::default()
                 };
                 let mut view = View3d::default();
-                view.camera.held = held(&part.reach.poses, &place).as_ref().map_or(Frame::IDENTITY, frame);
+                view.camera.held = held(&part.reach.poses, &place).map_or(Frame::IDENTITY, Frame::from);
                 let links = style.arm.iter().flat_map(|link| link.ends);
                 view.camera.fit_points(&part.scene.outline().into_iter().chain(links).collect::<Vec<_>>(), SIZE);
                 let (width, height, pixels) = view.picture(&state, &part.scene, &style, [900, 700]).unwrap();
