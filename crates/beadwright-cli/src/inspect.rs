@@ -5,7 +5,7 @@ use anyhow::Context;
 use beadwright::dialect::reading;
 use beadwright::export::toolpath;
 use beadwright::model::iges::{IgesCurve, IgesFile};
-use beadwright::model::{Import, Units, decoded, holes, import_damaged, is_solid, outline, stl};
+use beadwright::model::{Import, Mesh, Solids, Units, decoded, holes, import_damaged, is_solid, outline, stl};
 use beadwright::report::overhang;
 use glam::DVec3;
 use std::io::Write;
@@ -93,6 +93,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for object in &import.objects {
         writeln!(out, "  object     {}, {} triangles", object.name, object.triangles)?;
     }
+    if (2..=MOST_SOLIDS).contains(&repair.shells) {
+        list_solids(&mut out, &import.mesh)?;
+    }
     if repair.is_clean() {
         writeln!(out, "  The mesh is closed and clean.")?;
     }
@@ -101,6 +104,20 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     if let Some(path) = &arguments.output {
         writeln!(out, "  The mended solid is in {}.", path.display())?;
+    }
+    Ok(())
+}
+
+/// Of so many shells, solids are listed.
+const MOST_SOLIDS: usize = 50;
+
+/// Each solid of several, with a point by which a body can name it.
+fn list_solids(out: &mut impl Write, mesh: &Mesh) -> anyhow::Result<()> {
+    let solids = Solids::of(mesh);
+    for number in (0..solids.count()).filter(|_| solids.count() > 1) {
+        let volume = solids.mesh(&[number]).volume();
+        let at = solids.point(number).map_or_else(String::new, |p| format!(", at {:.2}/{:.2}/{:.2}", p.x, p.y, p.z));
+        writeln!(out, "  solid      {volume:.3}{at}")?;
     }
     Ok(())
 }

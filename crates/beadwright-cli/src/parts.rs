@@ -55,7 +55,10 @@ fn each(arguments: &Arguments) -> anyhow::Result<()> {
     }
     bar.finish_and_clear();
     let named = |one: &Planned<'_>| -> Vec<String> {
-        remedy::reasons(&one.summary).iter().map(|reason| format!("{}: {reason}", one.name)).collect()
+        remedy::reasons(&one.summary, remedy::words(&one.profile))
+            .iter()
+            .map(|reason| format!("{}: {reason}", one.name))
+            .collect()
     };
     let reasons: Vec<String> =
         planned.iter().flat_map(named).chain(clearance.close().iter().map(Close::sentence)).collect();
@@ -109,7 +112,12 @@ impl Planned<'_> {
     /// Writes the files and reports them; with `--json` it gives the totals instead.
     fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
         let Self { name, profile, model, folder, mut files, summary, figures } = self;
-        let found = remedy::findings(&summary, &model.repair().sentences(), files.check(&Task::new())?);
+        let found = remedy::findings(
+            &summary,
+            &model.repair().sentences(),
+            files.check(&Task::new())?,
+            remedy::words(&profile),
+        );
         let built = files.built();
         let written = files.finish(&summary, &model.repair())?;
         if arguments.json {

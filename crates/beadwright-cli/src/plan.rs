@@ -11,6 +11,7 @@ use beadwright::deposit::{DepositSettings, Figures, Judge, stack::Growth};
 use beadwright::dialect;
 use beadwright::files::{Folder, PlanFiles, Programs, REFUSED, Selection, Written};
 use beadwright::fill::StrategyName;
+use beadwright::finding::Words;
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::model::together::Place;
@@ -285,8 +286,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         anyhow::bail!("--picture {missing}: the part has the layers 1 to {}", summary.metrics.layers);
     }
     if !summary.forbidden.is_empty() && !arguments.allow_findings {
-        let report = files.refuse(&summary, &model.repair(), &arguments.output)?;
-        let mut reasons = remedy::reasons(&summary);
+        let words = remedy::words(&profile);
+        let report = files.refuse(&summary, &model.repair(), words, &arguments.output)?;
+        let mut reasons = remedy::reasons(&summary, words);
         let hangs = |w: &WarningSummary| w.kind == WarningKind::InTheAir;
         let hangs = summary.warnings.summaries().any(hangs) && !arguments.preform && profile.layers.are_level();
         if let Some(mesh) = model.mesh().filter(|_| hangs) {
@@ -300,7 +302,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let own = model.notes().iter().cloned();
     summary.notes.splice(0..0, own.chain(faults).chain(note));
     summary.notes.extend(files.notes());
-    let found = remedy::findings(&summary, &model.repair().sentences(), files.check(&task)?);
+    let found = remedy::findings(&summary, &model.repair().sentences(), files.check(&task)?, remedy::words(&profile));
     let (figures, totals, built) = (files.figures(), files.totals(), files.built());
     let written = files.finish(&summary, &model.repair())?;
 
@@ -430,11 +432,17 @@ impl<'a> Files<'a> {
     }
 
     /// Writes only the report, which shows the places because of which there is no program; returns its path.
-    fn refuse(self, summary: &Summary, repair: &RepairReport, output: &Path) -> anyhow::Result<Option<PathBuf>> {
+    fn refuse(
+        self,
+        summary: &Summary,
+        repair: &RepairReport,
+        words: Words,
+        output: &Path,
+    ) -> anyhow::Result<Option<PathBuf>> {
         let Some(files) = self.files else { return Ok(None) };
         drop(self.folder);
         let mut folder = Folder::new(output)?;
-        folder.extend([files.refused(summary, repair, remedy::words)])?;
+        folder.extend([files.refused(summary, repair, words)])?;
         folder.commit()?;
         Ok(Some(output.join(REFUSED)))
     }

@@ -4,13 +4,28 @@ use beadwright::adapt::SeeError;
 use beadwright::bead::library::LibraryError;
 use beadwright::check;
 use beadwright::dialect::reading::ReadError;
-use beadwright::finding::{Finding, Severity};
+use beadwright::finding::{Finding, Severity, Words};
 use beadwright::model::{ImportError, PartError};
 use beadwright::plan::{PlanError, Summary};
+use beadwright::profile::Profile;
 use beadwright::read_back::ReadBackError;
 
-/// What the command offers against a kind of finding.
-pub(crate) fn words(kind: &str) -> Option<&'static str> {
+/// What the command offers against the findings of a plan by this profile.
+pub(crate) fn words(profile: &Profile) -> Words {
+    if profile.layers.are_level() { of_level } else { of_charted }
+}
+
+/// Layers that are not level begin where their chart does.
+fn of_charted(kind: &str) -> Option<&'static str> {
+    match kind {
+        "high-start" | "nothing-below" | "in-the-air" | "hanging-island" | "overhang" => {
+            Some("--bodies divides the part into bodies that each have metal below.")
+        }
+        other => of_level(other),
+    }
+}
+
+fn of_level(kind: &str) -> Option<&'static str> {
     Some(match kind {
         "gap-closed" => "inspect --repair shows and repairs it.",
         "open-contour-dropped" => {
@@ -28,13 +43,14 @@ pub(crate) fn words(kind: &str) -> Option<&'static str> {
 
 /// All that is to be said of a plan, the worst first, with remedies in the words of the command; `model` and `found` as in
 /// [`check::all_findings`].
-pub(crate) fn findings(summary: &Summary, model: &[String], found: &[Finding]) -> Vec<Finding> {
+pub(crate) fn findings(summary: &Summary, model: &[String], found: &[Finding], words: Words) -> Vec<Finding> {
     check::all_findings(summary, model, found).into_iter().map(|finding| finding.in_words(words)).collect()
 }
 
 /// Why the programs of a plan should not be started, as sentences with remedies in the words of the command.
-pub(crate) fn reasons(summary: &Summary) -> Vec<String> {
-    let serious = findings(summary, &[], &[]).into_iter().filter(|finding| finding.severity == Severity::Serious);
+pub(crate) fn reasons(summary: &Summary, words: Words) -> Vec<String> {
+    let serious =
+        findings(summary, &[], &[], words).into_iter().filter(|finding| finding.severity == Severity::Serious);
     serious.map(|finding| finding.sentence()).collect()
 }
 

@@ -2,8 +2,9 @@
 
 use beadwright::bead::library::LibraryError;
 use beadwright::dialect::own::OwnError;
+use beadwright::finding::Words;
 use beadwright::model::{ImportError, PartError};
-use beadwright::profile::ProfileError;
+use beadwright::profile::{Profile, ProfileError};
 use beadwright::read_back::ReadBackError;
 use pyo3::prelude::*;
 use std::error::Error;
@@ -57,7 +58,21 @@ fn place_in(error: &(dyn Error + 'static)) -> Option<String> {
 }
 
 /// What the package offers against a kind of finding.
-pub(crate) fn words(kind: &str) -> Option<&'static str> {
+pub(crate) fn words(profile: &Profile) -> Words {
+    if profile.layers.are_level() { of_level } else { of_charted }
+}
+
+/// Layers that are not level begin where their chart does.
+fn of_charted(kind: &str) -> Option<&'static str> {
+    match kind {
+        "high-start" | "nothing-below" | "in-the-air" | "hanging-island" | "overhang" => {
+            Some("layers.bodies divides the part into bodies that each have metal below.")
+        }
+        other => of_level(other),
+    }
+}
+
+fn of_level(kind: &str) -> Option<&'static str> {
     Some(match kind {
         "high-start" | "nothing-below" => "Part.above(z) begins higher up, stand=\"flat\" turns the part.",
         "in-the-air" => "stand=\"orient\" and \"flat\" turn the part, Part.above(z) begins higher up.",

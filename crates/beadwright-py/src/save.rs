@@ -71,7 +71,7 @@ pub(crate) fn findings(planned: &Planned, task: &Task) -> Result<Vec<Finding>, C
     summary.notes.splice(0..0, planned.part.notes().iter().chain(&planned.note).cloned());
     Ok(check::all_findings(&summary, &planned.part.repair().sentences(), &found)
         .into_iter()
-        .map(|finding| finding.in_words(words))
+        .map(|finding| finding.in_words(words(profile)))
         .collect())
 }
 

@@ -75,7 +75,7 @@ pub fn as_built(layers: &[Layer], profile: &Profile, part: &Mesh, task: &Task) -
     let metal = Metal::of(layers, profile);
     let grid = Grid::around(&[part.bounds(), metal.bounds()], profile);
     let inside = grid.inside(part, profile.slice_options(), task)?;
-    let held = grid.filled(|p| profile.layers.has(p), task)?;
+    let held = held(&grid, profile, part, task)?;
     let built = grid.filled(|p| metal.contains(p), task)?;
     let voxels: Vec<Voxel> = inside
         .into_iter()
@@ -97,6 +97,21 @@ pub fn as_built(layers: &[Layer], profile: &Profile, part: &Mesh, task: &Task) -
         common: volume(|voxel| voxel.part && voxel.metal),
         surface,
     })
+}
+
+/// Which voxels are to be welded.
+fn held(grid: &Grid, profile: &Profile, part: &Mesh, task: &Task) -> Result<Vec<bool>, Cancelled> {
+    let layers = &profile.layers;
+    if layers.bodies.iter().all(|body| body.solids.is_empty()) {
+        return grid.filled(|p| layers.has(p), task);
+    }
+    let mut held = vec![false; grid.counts.iter().product()];
+    for body in &layers.bodies {
+        let inside = grid.inside(&body.solids_of(part), profile.slice_options(), task)?;
+        let own = grid.filled(|p| body.has(p), task)?;
+        held.iter_mut().zip(inside.into_iter().zip(own)).for_each(|(held, (inside, own))| *held |= inside && own);
+    }
+    Ok(held)
 }
 
 /// What there is in the middle of a voxel.

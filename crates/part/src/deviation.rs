@@ -5,17 +5,14 @@
 //! that place is an edge or a corner (Bærentzen and Aanæs 2005, *Signed distance computation using the angle weighted
 //! pseudonormal*).
 
+use crate::model::triangle::{SAME_MM, Triangle};
 use crate::model::{Mesh, NO_NEIGHBOUR, Units};
 use crate::task::{Cancelled, Task};
 use glam::DVec3;
 use rayon::prelude::*;
-use rstar::{AABB, PointDistance, RTree, RTreeObject};
+use rstar::RTree;
 use serde::{Serialize, Serializer};
-use std::f64::consts::{PI, TAU};
 use std::ops::RangeInclusive;
-
-/// Places that are nearer to each other count as one, mm.
-const SAME_MM: f64 = 1e-6;
 
 /// A point this near to the surface lies on it, mm: files are rounded.
 const ON_SURFACE_MM: f64 = 1e-3;
@@ -196,16 +193,16 @@ fn doubts(part: &Mesh, points: &[DVec3], distances: &[f64]) -> Vec<Doubt> {
 }
 
 /// The triangles of a part, in a tree of boxes.
-struct Surface(RTree<Facet>);
+struct Surface(RTree<Triangle>);
 
 impl Surface {
     /// None where no triangle has an area.
     fn of(part: &Mesh) -> Option<Self> {
         let corner = |i: u32| part.vertices.get(i as usize).copied();
-        let facet = |&[a, b, c]: &[u32; 3]| Some(Facet { corners: [corner(a)?, corner(b)?, corner(c)?] });
-        let facets = part.triangles.iter().filter_map(facet);
-        let facets: Vec<Facet> = facets.filter(|facet| facet.normal().length_squared() > 0.0).collect();
-        (!facets.is_empty()).then(|| Self(RTree::bulk_load(facets)))
+        let triangle = |&[a, b, c]: &[u32; 3]| Some(Triangle { corners: [corner(a)?, corner(b)?, corner(c)?] });
+        let triangles = part.triangles.iter().filter_map(triangle);
+        let triangles: Vec<Triangle> = triangles.filter(|triangle| triangle.normal().length_squared() > 0.0).collect();
+        (!triangles.is_empty()).then(|| Self(RTree::bulk_load(triangles)))
     }
 
     /// Distance of a point, mm: above 0 outside, below 0 inside.
@@ -215,72 +212,9 @@ impl Surface {
         let spot = nearest.closest(point);
         let distance = point.distance(spot);
         let around = self.0.locate_within_distance(at, (distance + SAME_MM).powi(2));
-        let touching = around.filter(|facet| facet.closest(point).distance(spot) < SAME_MM);
-        let normal: DVec3 = touching.map(|facet| facet.normal().normalize_or_zero() * facet.angle_at(spot)).sum();
+        let touching = around.filter(|triangle| triangle.closest(point).distance(spot) < SAME_MM);
+        let normal: DVec3 =
+            touching.map(|triangle| triangle.normal().normalize_or_zero() * triangle.angle_at(spot)).sum();
         if normal.dot(point - spot) < 0.0 { -distance } else { distance }
-    }
-}
-
-/// A triangle, wound counter-clockwise seen from outside.
-struct Facet {
-    corners: [DVec3; 3],
-}
-
-impl Facet {
-    fn edges(&self) -> [[DVec3; 2]; 3] {
-        let [a, b, c] = self.corners;
-        [[a, b], [b, c], [c, a]]
-    }
-
-    /// Points outside; its length is twice the area, mm².
-    fn normal(&self) -> DVec3 {
-        let [a, b, c] = self.corners;
-        (b - a).cross(c - a)
-    }
-
-    /// The place of the triangle that is nearest to a point.
-    fn closest(&self, point: DVec3) -> DVec3 {
-        let (normal, edges) = (self.normal(), self.edges());
-        if edges.iter().all(|[a, b]| normal.dot((b - a).cross(point - a)) >= 0.0) {
-            return point - normal * (normal.dot(point - self.corners[0]) / normal.length_squared());
-        }
-        let [first, others @ ..] = edges.map(|edge| on_edge(edge, point));
-        others.into_iter().fold(first, |best, place| {
-            if place.distance_squared(point) < best.distance_squared(point) { place } else { best }
-        })
-    }
-
-    /// The angle of the triangle around one of its places: a full turn inside it, half a turn on an edge.
-    fn angle_at(&self, spot: DVec3) -> f64 {
-        let [a, b, c] = self.corners;
-        let corner = [[a, b, c], [b, c, a], [c, a, b]].into_iter().find(|[at, ..]| at.distance(spot) < SAME_MM);
-        match corner {
-            Some([at, next, last]) => (next - at).angle_between(last - at),
-            None if self.edges().iter().any(|edge| on_edge(*edge, spot).distance(spot) < SAME_MM) => PI,
-            None => TAU,
-        }
-    }
-}
-
-/// The place of an edge that is nearest to a point.
-fn on_edge([from, to]: [DVec3; 2], point: DVec3) -> DVec3 {
-    let along = to - from;
-    let part = (point - from).dot(along) / along.length_squared();
-    if part.is_finite() { from + along * part.clamp(0.0, 1.0) } else { from }
-}
-
-impl RTreeObject for Facet {
-    type Envelope = AABB<[f64; 3]>;
-
-    fn envelope(&self) -> Self::Envelope {
-        let [a, b, c] = self.corners;
-        AABB::from_corners(a.min(b).min(c).to_array(), a.max(b).max(c).to_array())
-    }
-}
-
-impl PointDistance for Facet {
-    fn distance_2(&self, point: &[f64; 3]) -> f64 {
-        let point = DVec3::from_array(*point);
-        self.closest(point).distance_squared(point)
     }
 }

@@ -119,6 +119,9 @@ pub struct Check {
 pub struct Subject<'a> {
     layers: Vec<&'a Layer>,
     profile: &'a Profile,
+    /// The layers of bodies welded before, and the profile of all bodies.
+    earlier: &'a [&'a Layer],
+    whole: &'a Profile,
     /// What the deposit model says about each layer.
     figures: Vec<Figures>,
     /// How the part grows from layer to layer.
@@ -264,10 +267,12 @@ pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, judged: 
     for (i, body) in bodies(&layers).enumerate() {
         let own = first..first + body.len();
         let part = |all: usize| own.start.min(all)..own.end.min(all);
-        let profile = &*profile.of_body(body[0].body);
+        let own_profile = &*profile.of_body(body[0].body);
         let subject = Subject {
             layers: body.to_vec(),
-            profile,
+            profile: own_profile,
+            earlier: &layers[..first],
+            whole: profile,
             figures: figures[part(figures.len())].to_vec(),
             growth: growth[part(growth.len())].to_vec(),
             built: built.get(i).copied().flatten(),

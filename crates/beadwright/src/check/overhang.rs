@@ -3,7 +3,8 @@
 use super::{Check, Finding, Subject};
 use crate::layer::{Layer, overhang};
 use crate::plan::charted::Across;
-use planar::Polygon;
+use glam::{DVec2, DVec3};
+use planar::{Polygon, buffer};
 
 pub(super) const CHECK: Check = Check {
     name: "overhang",
@@ -14,6 +15,12 @@ pub(super) const CHECK: Check = Check {
     find,
 };
 
+/// Beads of bodies welded before lie under a layer if their tops are this far from its underside, in heights of the layer: what
+/// rises higher beside it begins below it.
+const TOPS: std::ops::Range<f64> = -0.75..2.0;
+/// They are drawn this accurately, in bead widths.
+const ACCURACY: f64 = 0.05;
+
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let width = subject.profile.bead.width;
     let reach = subject.profile.check.max_overhang * width;
@@ -22,10 +29,46 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         None => below.islands.clone(),
     };
     let hanging = |layer: &&Layer| {
-        let below: Vec<Polygon> = subject.below(layer).iter().flat_map(|below| islands(below, layer)).collect();
+        let mut below: Vec<Polygon> = subject.below(layer).iter().flat_map(|below| islands(below, layer)).collect();
+        overhang(&below, &layer.islands, reach, width)?;
+        below.extend(of_other_bodies(subject, layer));
         let (area, place) = overhang(&below, &layer.islands, reach, width)?;
         let text = format!("{area:.1} mm² overhang the layer below by more than {reach:.1} mm.");
         Some(CHECK.of_layer(layer, Some(place.extend(layer.z)), text))
     };
     subject.layers.iter().skip(1).filter_map(hanging).collect()
+}
+
+/// Metal of bodies welded before under a layer, as that is unrolled.
+fn of_other_bodies(subject: &Subject<'_>, layer: &Layer) -> Vec<Polygon> {
+    let Some(outline) = layer.islands.first().filter(|_| !subject.earlier.is_empty()) else { return Vec::new() };
+    let (sheet, near) = (subject.profile.layers.chart.sheet(layer.middle()), outline.outer.points()[0]);
+    let underside = layer.z - layer.height;
+    let under = |p: DVec3| {
+        let at = sheet.coordinates(p, near);
+        TOPS.contains(&((at.z - underside) / layer.height)).then_some(at.truncate())
+    };
+    let width = subject.profile.bead.width;
+    let mut lines: Vec<Vec<DVec2>> = Vec::new();
+    for other in subject.earlier {
+        let own = subject.whole.layers.sheet(other);
+        let place = |p: DVec3| own.as_ref().map_or(p, |own| own.at(p).place);
+        for piece in other.passes.iter().flat_map(|pass| pass.segments()) {
+            let steps = (piece.from.distance(piece.to) / width).ceil().max(1.0) as usize;
+            let points = (0..=steps).map(|k| under(place(piece.from.lerp(piece.to, k as f64 / steps as f64))));
+            lines.extend(
+                points.collect::<Vec<_>>().split(Option::is_none).map(|run| run.iter().flatten().copied().collect()),
+            );
+        }
+    }
+    // Where a line crosses the seam, its ends lie far apart.
+    lines.retain(|line| !line.is_empty() && line.windows(2).all(|ends| ends[0].distance(ends[1]) < 2.0 * width));
+    let around = [-1.0, 1.0].into_iter().flat_map(|turns| {
+        lines
+            .iter()
+            .filter_map(|line| line.iter().map(|p| sheet.turned(*p, turns)).collect())
+            .collect::<Vec<Vec<DVec2>>>()
+    });
+    let all: Vec<Vec<DVec2>> = lines.iter().cloned().chain(around.collect::<Vec<_>>()).collect();
+    buffer(&all, false, width / 2.0, ACCURACY * width).polygons().to_vec()
 }

@@ -63,7 +63,7 @@ pub(super) fn bodies_into<S: Sink + Send>(
         let under = owned[..k].iter().map(|other| &other.mesh).chain(onto);
         let footing = if k == 0 && onto.is_none() {
             ready.in_order(&owned[1..], task)?;
-            Footing::Plate
+            Footing::PLATE
         } else {
             ready.footing(under, task)?
         };
@@ -133,6 +133,9 @@ struct Ready<'a> {
 
 impl<'a> Ready<'a> {
     fn of<E>(own: &'a Own<'a>, task: &Task) -> Result<Self, PlanError<E>> {
+        if let Some(name) = own.body.unknown_solid() {
+            return Err(own.wrong(format!("no object of the model is named \"{name}\".")));
+        }
         if own.mesh.triangles.is_empty() {
             return Err(own.wrong("nothing of the part lies above all planes of its within."));
         }
@@ -150,20 +153,17 @@ impl<'a> Ready<'a> {
     /// What its layers lie on besides one another.
     fn footing<'m, E>(&self, others: impl Iterator<Item = &'m Mesh>, task: &Task) -> Result<Footing, PlanError<E>> {
         let Own { body, profile, .. } = self.own;
-        if body.on_stock || profile.layers.chart.is_level() {
-            return Ok(Footing::Plate);
-        }
-        let mut under: Vec<Under> = Vec::new();
+        let mut metal: Vec<Under> = Vec::new();
         for mesh in others {
             let of_mesh = under_layers(mesh, &self.slabs, profile, task)?;
-            if under.is_empty() {
-                under = of_mesh;
+            if metal.is_empty() {
+                metal = of_mesh;
             } else {
-                let more = under.iter_mut().zip(of_mesh);
+                let more = metal.iter_mut().zip(of_mesh);
                 more.for_each(|(under, more)| under.outlines.extend(more.outlines));
             }
         }
-        Ok(Footing::Metal(under))
+        Ok(Footing { plate: body.on_stock || profile.layers.chart.is_level(), metal })
     }
 
     /// Refuses a body whose first layer lies on one that is welded after it.

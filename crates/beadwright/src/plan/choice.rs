@@ -40,6 +40,7 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     let mut profile = profile.clone();
     let mut note = None;
     if let Part::Mesh(import) = part {
+        profile.layers.bodies.iter_mut().for_each(|body| body.find_solids(&import.objects));
         begin_where_it_does(&import.mesh, &mut profile);
     }
     match part {

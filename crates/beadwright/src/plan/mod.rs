@@ -146,7 +146,7 @@ pub fn plan_into<'a, S: Sink + Send>(
     let unrolled = Unrolled::of(given, profile, task)?;
     let part = unrolled.as_ref().map_or(given, Unrolled::part);
     let warmth = warm::predicted(part, profile, task)?;
-    let mut summary = plan_at(&warmth, name, part, Footing::Plate, profile, task, sink)?;
+    let mut summary = plan_at(&warmth, name, part, Footing::PLATE, profile, task, sink)?;
     if let (Some(_), PartRef::Mesh { mesh: placed, .. }, PartRef::Mesh { mesh, .. }) = (&unrolled, given, part) {
         summary.notes.extend(charted::notes(placed, mesh, profile));
         summary.forbidden.extend(charted::too_narrow(mesh.bounds().1.z, profile));
@@ -187,7 +187,7 @@ pub fn plan_with<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let mesh = &*charted::unrolled(mesh, profile, task)?;
     let warmth = warm::predicted(mesh.into(), profile, task)?;
-    plan_mesh((&warmth, Footing::Plate), name, (mesh, None), strategy, profile, task, sink)
+    plan_mesh((&warmth, Footing::PLATE), name, (mesh, None), strategy, profile, task, sink)
 }
 
 fn plan_mesh<S: Sink + Send>(
@@ -323,7 +323,7 @@ fn plan_curves<S: Sink + Send>(
         layers.into_par_iter().map(fill).collect()
     };
     let mut summary =
-        run([name, profile.fill.strategy.name()], extent, (heat, Footing::Plate), profile, task, sink, fill_batch)?;
+        run([name, profile.fill.strategy.name()], extent, (heat, Footing::PLATE), profile, task, sink, fill_batch)?;
     summary.notes.extend(centre_lines::other_thickness(given, profile));
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(

@@ -49,7 +49,7 @@ pub fn parts_into<S: Sink + Send>(
     for (((name, part), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
         clearance.begin(name);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
-        let own = plan_at(warmth, name, *part, Footing::Plate, profile, task, &mut watch)?;
+        let own = plan_at(warmth, name, *part, Footing::PLATE, profile, task, &mut watch)?;
         row.finish(name, *count, &own);
     }
     let mut summary = row.summary("The parts are welded one after another");

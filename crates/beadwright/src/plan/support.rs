@@ -43,13 +43,23 @@ pub(super) struct Support {
 }
 
 /// What the layers of a body lie on besides one another.
-#[derive(Debug, Clone, Default)]
-pub(super) enum Footing {
-    /// Metal everywhere below the first layer: a plate, or what the chart says is there.
-    #[default]
-    Plate,
-    /// Metal of other bodies.
-    Metal(Vec<Under>),
+#[derive(Debug, Clone)]
+pub(super) struct Footing {
+    /// Whether there is metal everywhere below the first layer: a plate, or what the chart says is there.
+    pub(super) plate: bool,
+    /// Metal of other bodies under each layer; empty where there is none.
+    pub(super) metal: Vec<Under>,
+}
+
+impl Footing {
+    /// A plate alone.
+    pub(super) const PLATE: Self = Self { plate: true, metal: Vec::new() };
+}
+
+impl Default for Footing {
+    fn default() -> Self {
+        Self::PLATE
+    }
 }
 
 /// Metal that is there under a layer.
@@ -76,8 +86,7 @@ impl Support {
 
     /// Outlines of the metal of other bodies that lies under a layer.
     pub(super) fn there(&self, layer: &Layer, profile: &Profile) -> Vec<Polygon> {
-        let Footing::Metal(under) = &self.footing else { return Vec::new() };
-        let Some(under) = under.get(layer.index) else { return Vec::new() };
+        let Some(under) = self.footing.metal.get(layer.index) else { return Vec::new() };
         match Across::new(&profile.layers.chart, under.height, layer.middle()) {
             Some(across) => across.islands(&under.outlines),
             None => under.outlines.clone(),
@@ -99,7 +108,7 @@ impl Support {
             self.islands.append(&mut self.before.1);
         }
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
-        let on_plate = matches!(self.footing, Footing::Plate) && self.passes.is_empty();
+        let on_plate = self.footing.plate && self.passes.is_empty();
         if !on_plate && !alike {
             let (metal, there) = (Metal::of(&self.passes, width), self.there(layer, profile));
             let below = if solid { &there[..] } else { &[&there[..], &self.islands[..]].concat()[..] };

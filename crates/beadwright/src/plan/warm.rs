@@ -71,7 +71,7 @@ pub(super) fn predicted<E>(part: PartRef, profile: &Profile, task: &Task) -> Res
     let Some(wall) = wall else { return Ok(warmth) };
     for _ in 0..ROUNDS {
         let mut planned = Collect::default();
-        match plan_at(&warmth, "", part, Footing::Plate, profile, task, &mut planned) {
+        match plan_at(&warmth, "", part, Footing::PLATE, profile, task, &mut planned) {
             Ok(_) => {}
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled.into()),
             // The plan itself reports what is wrong.

@@ -1,9 +1,9 @@
 //! Bodies: what a part is welded as, one after another, each with layers of its own kind (`[[layers.bodies]]`).
 
 use super::{Predict, Profile};
-use crate::chart::{Chart, Plane};
+use crate::chart::{self, Chart, Plane};
 use crate::fill::StrategyName;
-use crate::model::Mesh;
+use crate::model::{Mesh, Object, Solids};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -23,6 +23,11 @@ pub struct Body {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub within: Vec<Plane>,
+    /// Of a model with several solids, those that it is: each by a point on it (`x/y/z`, mm, as the part stands) or, in a file of
+    /// bodies, by the name of the object in the model. All of them if left out.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
+    pub solids: Vec<Solid>,
     /// Whether its first layer lies on metal that is there already and is not welded, such as a shaft; it lies on other bodies, or
     /// on the plate, if left out. What the first body lies on is always there already.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -35,6 +40,31 @@ pub struct Body {
     pub predict: Option<Predict>,
 }
 
+/// What names a solid of a model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub enum Solid {
+    /// The one whose surface lies nearest to a point, mm.
+    At(DVec3),
+    /// Those of the object with this name.
+    Named(String),
+}
+
+impl From<String> for Solid {
+    fn from(text: String) -> Self {
+        chart::point(&text).map_or(Self::Named(text), Self::At)
+    }
+}
+
+impl From<Solid> for String {
+    fn from(solid: Solid) -> Self {
+        match solid {
+            Solid::At(p) => format!("{}/{}/{}", p.x, p.y, p.z),
+            Solid::Named(name) => name,
+        }
+    }
+}
+
 /// A file of bodies.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -45,7 +75,7 @@ struct File {
 /// Why a file of bodies cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "line {line}: {reason}. Each body is a table [[body]] with a name, and chart, within, on_stock and strategy where they are needed."
+    "line {line}: {reason}. Each body is a table [[body]] with a name, and chart, within, solids, on_stock and strategy where they are needed."
 )]
 pub struct BodiesError {
     /// Number of the line, from 1.
@@ -92,7 +122,15 @@ impl Body {
 
     /// A whole part as one body.
     pub fn of(name: &str, chart: Chart) -> Self {
-        Self { name: name.to_owned(), chart, within: Vec::new(), on_stock: false, strategy: None, predict: None }
+        Self {
+            name: name.to_owned(),
+            chart,
+            within: Vec::new(),
+            solids: Vec::new(),
+            on_stock: false,
+            strategy: None,
+            predict: None,
+        }
     }
 
     /// The text of a file of bodies.
@@ -109,6 +147,10 @@ impl Body {
                 let planes: Vec<String> = body.within.iter().map(|plane| format!("\"{plane}\"")).collect();
                 text.push_str(&format!("within = [{}]\n", planes.join(", ")));
             }
+            if !body.solids.is_empty() {
+                let solids: Vec<String> = body.solids.iter().cloned().map(String::from).collect();
+                text.push_str(&format!("solids = {}\n", toml::Value::from(solids)));
+            }
             if body.on_stock {
                 text.push_str("on_stock = true\n");
             }
@@ -117,13 +159,47 @@ impl Body {
         text
     }
 
+    /// Names of objects become points on their solids; `objects` are those of the model, as the part stands. A name that none of
+    /// them has stays.
+    pub fn find_solids(&mut self, objects: &[Object]) {
+        let found = |solid: Solid| -> Vec<Solid> {
+            let Solid::Named(name) = &solid else { return vec![solid] };
+            let named = objects.iter().filter(|object| object.name == *name);
+            let points: Vec<Solid> = named.flat_map(|object| &object.at).copied().map(Solid::At).collect();
+            if points.is_empty() { vec![solid] } else { points }
+        };
+        self.solids = self.solids.drain(..).flat_map(found).collect();
+    }
+
+    /// A solid whose name no object of the model has.
+    pub fn unknown_solid(&self) -> Option<&str> {
+        self.solids.iter().find_map(|solid| match solid {
+            Solid::Named(name) => Some(name.as_str()),
+            Solid::At(_) => None,
+        })
+    }
+
+    /// The solids of a mesh of which it is a part.
+    pub(crate) fn solids_of<'m>(&self, mesh: &'m Mesh) -> Cow<'m, Mesh> {
+        if self.solids.is_empty() {
+            return Cow::Borrowed(mesh);
+        }
+        let solids = Solids::of(mesh);
+        let number = |solid: &Solid| match solid {
+            Solid::At(point) => solids.nearest(*point),
+            Solid::Named(_) => None,
+        };
+        Cow::Owned(solids.mesh(&self.solids.iter().filter_map(number).collect::<Vec<_>>()))
+    }
+
     /// The part of a mesh that it is. Around an axis and along a guide, what lies below its first layer is still there.
     pub fn of_mesh(&self, mesh: &Mesh) -> Mesh {
         let first = match &self.chart {
             Chart::Plane(plane) if !self.chart.is_level() => Some(plane),
             _ => None,
         };
-        self.within.iter().chain(first).fold(mesh.clone(), |rest, plane| plane.above(&rest))
+        let whole = self.solids_of(mesh).into_owned();
+        self.within.iter().chain(first).fold(whole, |rest, plane| plane.above(&rest))
     }
 
     /// Whether a place of the part belongs to it.

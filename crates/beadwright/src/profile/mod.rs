@@ -21,7 +21,7 @@ mod slice;
 mod wall;
 
 pub use bead::BeadSection;
-pub use bodies::{BodiesError, Body};
+pub use bodies::{BodiesError, Body, Solid};
 pub use check::CheckLimits;
 pub use fill::{FillSection, RasterTurn};
 pub use hybrid::HybridSection;

@@ -3,8 +3,9 @@
 
 use crate::common;
 
+use beadwright::as_built::as_built;
 use beadwright::layer::Layer;
-use beadwright::model::{Import, Mesh, Part, RepairReport, solid::Solid};
+use beadwright::model::{Import, Mesh, Object, Part, RepairReport, solid::Solid};
 use beadwright::plan::{self, Plan, PlanError};
 use beadwright::planar::{Polygon, Ring};
 use beadwright::profile::{Body, Profile};
@@ -48,6 +49,84 @@ fn imported(mesh: Mesh) -> Part {
         notes: Vec::new(),
         milled: None,
     })
+}
+
+/// A plate, a block that reaches into it, and one that stands on it.
+#[test]
+fn a_body_is_the_solid_that_it_names() {
+    let solids = [
+        block(DVec3::ZERO, DVec3::new(100.0, 60.0, 12.0)),
+        block(DVec3::new(10.0, 10.0, 8.0), DVec3::new(40.0, 50.0, 40.0)),
+        block(DVec3::new(60.0, 10.0, 12.0), DVec3::new(90.0, 50.0, 36.0)),
+    ];
+    let Part::Mesh(mut import) = imported(mesh_of(&solids)) else { unreachable!() };
+    let at = vec![DVec3::new(75.0, 30.0, 36.0)];
+    import.objects = vec![Object { name: "block".to_owned(), triangles: 12, at }];
+    let text = "[[body]]\nname = \"plate\"\nsolids = [\"50/30/0\"]\n\n\
+                [[body]]\nname = \"bar\"\nwithin = [\"up=0/0/1,through=0/0/12\"]\nsolids = [\"25/30/40\"]\n\n\
+                [[body]]\nname = \"block\"\nsolids = [\"block\"]\n";
+    assert_eq!(Body::read(&Body::write(&Body::read(text).unwrap())).unwrap(), Body::read(text).unwrap());
+    let part = Part::Mesh(import);
+    let chosen = plan::choice::choose(&part, &with_bodies(text), true, &Task::new()).unwrap().profile;
+    let plan = plan::plan("part", &part, &chosen, &Task::new()).unwrap();
+    let volume = |body: usize| -> f64 {
+        let layers = plan.layers.iter().filter(|layer| layer.body == body);
+        layers.map(|layer| layer.height * layer.islands.iter().map(Polygon::area).sum::<f64>()).sum()
+    };
+    for (body, expected) in [100.0 * 60.0 * 12.0, 30.0 * 40.0 * 28.0, 30.0 * 40.0 * 24.0].into_iter().enumerate() {
+        assert!((volume(body) / expected - 1.0).abs() < 0.01, "body {body}: {} of {expected} mm³", volume(body));
+    }
+    let built = as_built(&plan.layers, &chosen, part.mesh().unwrap(), &Task::new()).unwrap();
+    assert!(built.agreement() > 0.95, "{}", built.agreement());
+
+    let unknown = with_bodies(&text.replace("solids = [\"block\"]", "solids = [\"blok\"]"));
+    let unknown = plan::choice::choose(&part, &unknown, true, &Task::new()).unwrap().profile;
+    let refused = plan::plan("part", &part, &unknown, &Task::new()).unwrap_err().to_string();
+    assert!(refused.contains("body block") && refused.contains("named \"blok\""), "{refused}");
+}
+
+/// A block beside a lower one: from the lower one's top on, its layers reach over that.
+#[test]
+fn a_body_may_grow_over_one_welded_before() {
+    let solids = [
+        block(DVec3::ZERO, DVec3::new(30.0, 60.0, 20.0)),
+        block(DVec3::new(30.0, 0.0, 0.0), DVec3::new(60.0, 60.0, 20.0)),
+        block(DVec3::new(0.0, 0.0, 20.0), DVec3::new(60.0, 60.0, 40.0)),
+    ];
+    let bodies = |up: DVec3, side: DVec3| {
+        let plane = |up: DVec3, p: DVec3| format!("\"up={}/{}/{},through={}/{}/{}\"", up.x, up.y, up.z, p.x, p.y, p.z);
+        let corner = 30.0 * side + 20.0 * up;
+        let chart = format!("chart = \"plane:up={}/{}/{}\"", up.x, up.y, up.z);
+        format!(
+            "[[body]]\nname = \"low\"\n{chart}\nwithin = [{}, {}]\n\n[[body]]\nname = \"high\"\n{chart}\non_stock = true\n",
+            plane(-up, corner),
+            plane(-side, corner)
+        )
+    };
+    for turn in
+        [DMat3::IDENTITY, DMat3::from_rotation_z(0.6), DMat3::from_rotation_x(0.2) * DMat3::from_rotation_z(0.6)]
+    {
+        let mut mesh = mesh_of(&solids);
+        mesh.vertices.iter_mut().for_each(|vertex| *vertex = turn * *vertex);
+        // What is not low is high: the blocks without what is welded already.
+        let low = bodies(turn * DVec3::Z, turn * DVec3::X);
+        let mut profile = with_bodies(&low);
+        profile.torch = None;
+        profile.layers.bodies[1].solids = [DVec3::new(60.0, 30.0, 10.0), DVec3::new(60.0, 30.0, 30.0)]
+            .map(|p| beadwright::profile::Solid::At(turn * p))
+            .to_vec();
+        let plan = planned(&mesh, &profile).unwrap();
+        assert!(plan.summary.forbidden.is_empty(), "{:?}", plan.summary.forbidden);
+        let warned = |kind| plan.summary.warnings.summaries().any(|warning| warning.kind == kind);
+        assert!(!warned(WarningKind::InTheAir) && !warned(WarningKind::Overhang), "{:?}", plan.summary.warnings);
+        let settings = plan::deposit_settings(&profile);
+        let found = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
+        assert!(found.iter().all(|finding| finding.kind != "overhang"), "{found:?}");
+        // Without the low body there is nothing below.
+        profile.layers.bodies.remove(0);
+        let alone = planned(&mesh, &profile).unwrap();
+        assert!(!alone.summary.forbidden.is_empty());
+    }
 }
 
 fn mesh_of(solids: &[Solid]) -> Mesh {

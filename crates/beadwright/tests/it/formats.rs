@@ -3,10 +3,10 @@
 use crate::common;
 
 use beadwright::example;
-use beadwright::model::{self, Import, ImportError, Mesh, Units, import};
+use beadwright::model::{self, Import, ImportError, Mesh, Placement, Solids, Units, import};
 use beadwright::task::Task;
 use common::models;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::fmt::Write as _;
 use std::io::Write as _;
 use zip::write::SimpleFileOptions;
@@ -184,6 +184,37 @@ fn a_part_is_the_same_in_every_format() {
         let read = read(&bytes).unwrap();
         near(&read, &mesh, factor);
         assert_eq!((read.units, read.objects[0].name.as_str()), (Some(Units::Millimetre), "part 1 & more"));
+    }
+}
+
+/// A block, a post that stands on it with a face in common, and one that reaches into it, turned and moved when they are placed.
+#[test]
+fn objects_of_a_file_name_their_solids_even_where_these_touch() {
+    let block = |low: [f64; 3], high: [f64; 3]| {
+        let corner =
+            |k: usize| DVec3::from_array([0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] }));
+        let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let triangles = sides.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+        Mesh::from_triangles((0..8).map(corner).collect(), triangles).0
+    };
+    let blocks = [
+        block([0.0, 0.0, 0.0], [60.0, 40.0, 20.0]),
+        block([0.0, 0.0, 20.0], [60.0, 40.0, 50.0]),
+        block([50.0, 10.0, 5.0], [90.0, 30.0, 15.0]),
+    ];
+    let objects: String = blocks.iter().zip(1..).map(|(mesh, id)| object(id, &mesh_xml(mesh))).collect();
+    let items: String = (1..=3).map(|id| format!("<item objectid=\"{id}\"/>")).collect();
+    let read = read(&threemf("millimeter", &objects, &items)).unwrap();
+    assert_eq!(read.objects.iter().map(|object| object.at.len()).collect::<Vec<_>>(), [1, 1, 1]);
+    for turn in [DVec3::ZERO, DVec3::new(0.0, 0.0, 37.0), DVec3::new(90.0, 17.0, 200.0)] {
+        let placement = Placement { turn, scale: 2.0, shift: DVec2::new(-80.0, 12.5), ..Placement::default() };
+        let placed = placement.solid(read.clone(), 5.0).unwrap();
+        let solids = Solids::of(&placed.mesh);
+        assert_eq!(solids.count(), 3);
+        for (object, own) in placed.objects.iter().zip(&blocks) {
+            let found = solids.mesh(&[solids.nearest(object.at[0]).unwrap()]);
+            assert!((found.volume() - 8.0 * own.volume()).abs() < 1e-3, "{}, {turn}", object.name);
+        }
     }
 }
 

@@ -31,7 +31,7 @@ pub use cylinder::{Cylinder, Side};
 pub use guide::{Guide, GuideError};
 pub use plane::Plane;
 pub use surface::{Surface, SurfaceError};
-pub use text::ChartError;
+pub use text::{ChartError, point};
 
 use crate::model::Mesh;
 use glam::{DVec2, DVec3};

@@ -274,21 +274,21 @@ impl<'a> Given<'a> {
             "z" => Some(DVec3::Z),
             _ => None,
         };
-        let axis = axis.map(|axis| axis * sign).or_else(|| three(value).and_then(unit));
+        let axis = axis.map(|axis| axis * sign).or_else(|| point(value).and_then(unit));
         axis.ok_or_else(|| Self::wrong(key, value, "write x, y, z, -x, -y, -z, or three numbers such as 1/0/0.5"))
     }
 
     /// A point, mm; the origin where nothing is written.
     fn place(&self, key: &str) -> Result<DVec3, ChartError> {
         let Some(value) = self.value(key) else { return Ok(DVec3::ZERO) };
-        three(value).ok_or_else(|| Self::wrong(key, value, "write x/y/z in mm, such as 0/0/25"))
+        point(value).ok_or_else(|| Self::wrong(key, value, "write x/y/z in mm, such as 0/0/25"))
     }
 
     /// Points one after another, mm.
     fn places(&self, key: &'static str) -> Result<Vec<DVec3>, ChartError> {
         let why = "where the curve begins, its corners, and where it ends, mm";
         let value = self.value(key).ok_or(ChartError::Missing { kind: self.kind, key, why })?;
-        let places = value.split(BETWEEN).map(three).collect::<Option<_>>();
+        let places = value.split(BETWEEN).map(point).collect::<Option<_>>();
         places.ok_or_else(|| Self::wrong(key, value, "write points x/y/z in mm, such as 0/0/0:0/0/140:140/0/140"))
     }
 
@@ -332,7 +332,8 @@ fn unit(vector: DVec3) -> Option<DVec3> {
     if vector.is_normalized() { Some(vector) } else { vector.try_normalize() }
 }
 
-fn three(text: &str) -> Option<DVec3> {
+/// Reads a point `x/y/z`.
+pub fn point(text: &str) -> Option<DVec3> {
     let numbers: Vec<f64> = text.split('/').map(|number| number.trim().parse().ok()).collect::<Option<_>>()?;
     let vector = DVec3::from_array(numbers.try_into().ok()?);
     vector.is_finite().then_some(vector)

@@ -15,6 +15,8 @@
 //! | [`cut`] | what lies above a plane |
 //! | [`iges`] | curves from IGES files, and curves written as IGES |
 //! | `solid` | outlines become closed meshes |
+//! | `solids` | a mesh divided into its solids |
+//! | `triangle` | how near a point lies to a triangle |
 //! | [`units`] | millimetres or inches? |
 //! | `part` | a model is placed and becomes the part that is planned |
 //! | [`wall_curves`] | walls given by their centre-lines |
@@ -36,10 +38,12 @@ mod placed;
 mod ply;
 pub mod repair;
 pub mod solid;
+mod solids;
 pub mod stand;
 pub mod stl;
 mod threemf;
 pub mod together;
+pub(crate) mod triangle;
 pub mod units;
 pub mod wall_curves;
 #[doc(hidden)]
@@ -49,11 +53,12 @@ pub use outline::Outlines;
 pub use part::{Model, Part, PartError, PartRef, Placement};
 pub use ply::points as ply_points;
 pub use repair::RepairReport;
+pub use solids::Solids;
 pub use units::Units;
 
 use crate::task::{Cancelled, Task};
 use crate::text::{self, TextError};
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -110,12 +115,14 @@ impl Milled {
 }
 
 /// An object of a file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Object {
     /// Its name.
     pub name: String,
     /// Its triangles, as read.
     pub triangles: usize,
+    /// A point on each of its solids, in the coordinates of the mesh.
+    pub at: Vec<DVec3>,
 }
 
 /// Why a model was refused.
@@ -351,8 +358,8 @@ impl Mesh {
         self.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum::<f64>() / 6.0
     }
 
-    /// Scales by `factor`, turns by `degrees` about x, then y, then z, and sets the part onto z = 0.
-    pub fn place(&mut self, factor: f64, degrees: DVec3) {
+    /// Scales by `factor`, turns by `degrees` about x, then y, then z, and sets the part onto z = 0. Returns where that takes points.
+    pub fn place(&mut self, factor: f64, degrees: DVec3) -> DAffine3 {
         let radians = degrees * std::f64::consts::PI / 180.0;
         let turn =
             DMat3::from_rotation_z(radians.z) * DMat3::from_rotation_y(radians.y) * DMat3::from_rotation_x(radians.x);
@@ -365,6 +372,7 @@ impl Mesh {
         for vertex in &mut self.vertices {
             vertex.z -= floor;
         }
+        DAffine3::from_mat3_translation(turn * factor, DVec3::NEG_Z * floor)
     }
 
     /// Refuses a part that lies farther out than the 2-D grid reaches.

@@ -243,7 +243,7 @@ impl Placement {
             None => units::guess(import.mesh.size() * self.scale, bead_width)?,
         };
         let mesh = &mut import.mesh;
-        mesh.place(units.in_mm() * self.scale, self.turn);
+        let placed = mesh.place(units.in_mm() * self.scale, self.turn);
         let (low, high) = mesh.bounds();
         let middle = if self.centre { ((low + high) / 2.0).truncate() } else { DVec2::ZERO };
         let by = (self.shift - middle).extend(0.0);
@@ -251,6 +251,8 @@ impl Placement {
             mesh.vertices.iter_mut().for_each(|vertex| *vertex += by);
         }
         mesh.check_reach()?;
+        let points = import.objects.iter_mut().flat_map(|object| &mut object.at);
+        points.for_each(|point| *point = placed.transform_point3(*point) + by);
         Ok(import)
     }
 

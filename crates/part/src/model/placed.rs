@@ -3,9 +3,9 @@
 //! What a file may unpack to is bounded: triangles with all copies, assemblies in assemblies.
 
 use super::formats::{self, Facet, MOST_TRIANGLES};
-use super::{Import, ImportError, Object, Units};
+use super::{Import, ImportError, Object, Solids, Units};
 use crate::task::Task;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Vec3};
 use std::collections::BTreeMap;
 
 /// Assemblies are nested no deeper than this.
@@ -60,12 +60,14 @@ impl Resources {
             return Err(self.too_many());
         }
         let (mut facets, mut objects): (Vec<Facet>, Vec<Object>) = (Vec::with_capacity(sum), Vec::new());
+        let mut ranges = Vec::new();
         for (id, at) in &self.items {
             let first = facets.len();
             self.lay(id, &(DAffine3::from_scale(DVec3::splat(self.unit)) * *at), &mut facets)?;
             task.check()?;
             if let (Some(object), true) = (self.objects.get(id), facets.len() > first) {
-                objects.push(Object { name: object.name.clone(), triangles: facets.len() - first });
+                objects.push(Object { name: object.name.clone(), triangles: facets.len() - first, at: Vec::new() });
+                ranges.push(first..facets.len());
             }
         }
         if facets.is_empty() {
@@ -73,7 +75,12 @@ impl Resources {
         }
         let count = facets.len();
         let place = |i| format!("triangle {}", i + 1);
-        let import = formats::of_facets(facets.into_iter(), count, self.format, place, task)?;
+        let import = formats::of_facets(facets.iter().copied(), count, self.format, place, task)?;
+        let solids = Solids::of(&import.mesh);
+        for (object, range) in objects.iter_mut().zip(ranges) {
+            let corners = facets[range].iter().map(|(_, corners)| corners.map(|corner| Vec3::from(corner).as_dvec3()));
+            object.at = solids.between(corners).into_iter().filter_map(|number| solids.point(number)).collect();
+        }
         Ok(Import { units: Some(Units::Millimetre), objects, ..import })
     }
 

@@ -64,7 +64,9 @@ pub fn arrange(parts: Vec<Named>, arrangement: Arrangement) -> Result<(Vec<Named
     let moved = parts.into_iter().zip(moves).map(|((name, mut import), by)| {
         import.mesh.vertices.iter_mut().for_each(|vertex| *vertex += by.extend(0.0));
         import.milled.iter_mut().for_each(|milled| milled.shift(by.extend(0.0)));
-        import.objects = vec![Object { name: name.clone(), triangles: import.repair.triangles_read }];
+        let mut at: Vec<DVec3> = import.objects.drain(..).flat_map(|object| object.at).collect();
+        at.iter_mut().for_each(|point| *point += by.extend(0.0));
+        import.objects = vec![Object { name: name.clone(), triangles: import.repair.triangles_read, at }];
         (name, import)
     });
     Ok((moved.collect(), places))

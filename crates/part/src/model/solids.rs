@@ -1,0 +1,182 @@
+//! The solids of a mesh: shells, each with the cavities inside it.
+
+use super::triangle::Triangle;
+use super::{Mesh, NO_NEIGHBOUR};
+use glam::DVec3;
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
+use std::collections::HashMap;
+
+/// A mesh divided into its solids, which are numbered in the order of their first triangles.
+///
+/// ```
+/// use bead_part::{example, model::Solids};
+/// use glam::DVec3;
+///
+/// // A cross, and another one beside it.
+/// let cross = example::find("cross").ok_or("no such example")?.mesh();
+/// let (mut both, mut other) = (cross.clone(), cross.clone());
+/// other.vertices.iter_mut().for_each(|vertex| vertex.x += 500.0);
+/// both.add(other);
+/// let solids = Solids::of(&both);
+/// assert_eq!((solids.count(), solids.nearest(DVec3::X * 500.0)), (2, Some(1)));
+/// assert!((solids.mesh(&[1]).volume() - cross.volume()).abs() < 1e-6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Solids<'a> {
+    mesh: &'a Mesh,
+    /// Of each triangle.
+    solid: Vec<usize>,
+    count: usize,
+    tree: RTree<Face>,
+}
+
+impl<'a> Solids<'a> {
+    /// Divides a mesh.
+    pub fn of(mesh: &'a Mesh) -> Self {
+        let (shell, shells) = shells(mesh);
+        let owner = owners(mesh, &shell, shells);
+        let mut number = HashMap::new();
+        let mut numbered = |shell: usize| {
+            let next = number.len();
+            *number.entry(owner[shell]).or_insert(next)
+        };
+        let solid: Vec<usize> = shell.into_iter().map(&mut numbered).collect();
+        let face = |(t, &solid): (usize, &usize)| Face { triangle: Triangle::of(mesh, t), solid };
+        let faces = solid.iter().enumerate().map(face).filter(|face| face.triangle.normal().length_squared() > 0.0);
+        let tree = RTree::bulk_load(faces.collect());
+        Self { mesh, count: number.len(), solid, tree }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The one whose surface lies nearest to a point.
+    pub fn nearest(&self, point: DVec3) -> Option<usize> {
+        self.tree.nearest_neighbor(&point.to_array()).map(|face| face.solid)
+    }
+
+    /// Those of the given numbers as a mesh.
+    pub fn mesh(&self, numbers: &[usize]) -> Mesh {
+        let kept: Vec<usize> = (0..self.solid.len()).filter(|t| numbers.contains(&self.solid[*t])).collect();
+        let (mut vertices, mut vertex, mut triangle) = (Vec::new(), HashMap::new(), HashMap::new());
+        for (new, &old) in kept.iter().enumerate() {
+            triangle.insert(old as u32, new as u32);
+        }
+        let mut renumbered = |old: u32| {
+            *vertex.entry(old).or_insert_with(|| {
+                vertices.push(self.mesh.vertices[old as usize]);
+                vertices.len() as u32 - 1
+            })
+        };
+        let triangles = kept.iter().map(|&t| self.mesh.triangles[t].map(&mut renumbered)).collect();
+        let across = |old: u32| triangle.get(&old).copied().unwrap_or(NO_NEIGHBOUR);
+        let neighbours = kept.iter().map(|&t| self.mesh.neighbours[t].map(across)).collect();
+        Mesh { vertices, triangles, neighbours }
+    }
+
+    /// A point on the surface of one that lies on no other, where there is one, so that [`Self::nearest`] finds it again.
+    pub fn point(&self, number: usize) -> Option<DVec3> {
+        let own = || (0..self.solid.len()).filter(|t| self.solid[*t] == number);
+        let middles = own().map(|t| Triangle::of(self.mesh, t).middle()).step_by(own().count() / TRIED + 1);
+        let beside = (self.mesh.size().length() * BESIDE).powi(2);
+        let alone = |p: &DVec3| self.tree.locate_within_distance(p.to_array(), beside).all(|face| face.solid == number);
+        middles.clone().find(alone).or_else(|| middles.clone().next())
+    }
+
+    /// The solids to which triangles between these points belong.
+    pub(super) fn between(&self, corners: impl Iterator<Item = [DVec3; 3]>) -> Vec<usize> {
+        let key = |v: DVec3| v.to_array().map(f64::to_bits);
+        let mut around: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
+        for (triangle, solid) in self.mesh.triangles.iter().zip(&self.solid) {
+            for corner in triangle {
+                let solids = around.entry(key(self.mesh.vertices[*corner as usize])).or_default();
+                if !solids.contains(solid) {
+                    solids.push(*solid);
+                }
+            }
+        }
+        let none = Vec::new();
+        let mut found: Vec<usize> = corners
+            .filter_map(|corners| {
+                let [a, b, c] = corners.map(|corner| around.get(&key(corner)).unwrap_or(&none));
+                let mut common = a.iter().filter(|solid| b.contains(solid) && c.contains(solid));
+                // Where solids touch, their faces have the same corners.
+                common.next().filter(|_| common.next().is_none()).copied()
+            })
+            .collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+}
+
+/// So many places are tried for a point of a solid.
+const TRIED: usize = 200;
+/// A place lies on another solid if it is as near to it as this part of the mesh's size.
+const BESIDE: f64 = 1e-4;
+
+/// The shell of each triangle, and how many there are.
+fn shells(mesh: &Mesh) -> (Vec<usize>, usize) {
+    let mut shell = vec![usize::MAX; mesh.triangles.len()];
+    let (mut count, mut open) = (0, Vec::new());
+    for first in 0..shell.len() {
+        if shell[first] != usize::MAX {
+            continue;
+        }
+        shell[first] = count;
+        open.push(first);
+        while let Some(t) = open.pop() {
+            for across in mesh.neighbours[t].into_iter().filter(|across| *across != NO_NEIGHBOUR) {
+                if std::mem::replace(&mut shell[across as usize], count) == usize::MAX {
+                    open.push(across as usize);
+                }
+            }
+        }
+        count += 1;
+    }
+    (shell, count)
+}
+
+/// For each shell the one to whose solid it belongs: a cavity to the smallest shell around it, others to themselves.
+fn owners(mesh: &Mesh, shell: &[usize], count: usize) -> Vec<usize> {
+    let mut volume = vec![0.0; count];
+    let mut bounds = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
+    for (triangle, &shell) in mesh.triangles.iter().zip(shell) {
+        let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize]);
+        volume[shell] += a.dot(b.cross(c)) / 6.0;
+        for corner in [a, b, c] {
+            bounds[shell] = (bounds[shell].0.min(corner), bounds[shell].1.max(corner));
+        }
+    }
+    let holds = |outer: usize, inner: usize| {
+        bounds[outer].0.cmple(bounds[inner].0).all() && bounds[outer].1.cmpge(bounds[inner].1).all()
+    };
+    let owner = |own: usize| {
+        let around =
+            (0..count).filter(|other| volume[own] < 0.0 && volume[*other] > -volume[own] && holds(*other, own));
+        around.min_by(|a, b| volume[*a].total_cmp(&volume[*b])).unwrap_or(own)
+    };
+    (0..count).map(owner).collect()
+}
+
+/// A triangle of a solid.
+struct Face {
+    triangle: Triangle,
+    solid: usize,
+}
+
+impl RTreeObject for Face {
+    type Envelope = AABB<[f64; 3]>;
+
+    fn envelope(&self) -> Self::Envelope {
+        self.triangle.envelope()
+    }
+}
+
+impl PointDistance for Face {
+    fn distance_2(&self, point: &[f64; 3]) -> f64 {
+        self.triangle.distance_2(point)
+    }
+}
