@@ -164,12 +164,15 @@ impl<S: Sink> Emitter<'_, S> {
         if !there.is_empty() {
             below.to_mut().extend(there.iter().cloned());
         }
-        let mut doubt = |kind, place, size| layer.warnings.push(Warning { kind, layer: index, place, size });
+        let mut doubts = Vec::new();
+        let mut doubt = |kind, place, size| doubts.push(Warning { kind, layer: index, place, size });
         if let Some(first) = layer.passes.first() {
             let gap = layer.z - layer.height - self.built;
             if gap > LARGE_GAP * layer.height && !stands(first) {
                 let kind = if self.metrics.passes == 0 { WarningKind::HighStart } else { WarningKind::NothingBelow };
                 doubt(kind, first.start().unwrap_or_default().truncate(), gap);
+                // It says the same of the whole layer.
+                layer.warnings.retain(|warning| warning.kind != WarningKind::InTheAir);
             } else if !below.is_empty() {
                 let (reach, width) = (limits.max_overhang * profile.bead.width, profile.bead.width);
                 if let Some((area, place)) = overhang(&below, &layer.islands, reach, width) {
@@ -189,6 +192,7 @@ impl<S: Sink> Emitter<'_, S> {
         for pass in layer.passes.iter().filter(unsteady) {
             doubt(WarningKind::ShortArc, pass.start().unwrap_or_default().truncate(), pass.length());
         }
+        layer.warnings.extend(doubts);
     }
 }
 

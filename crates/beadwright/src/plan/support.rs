@@ -17,7 +17,8 @@ const LEAST: f64 = 0.5;
 const BRIDGE: f64 = 2.0;
 /// A place is clear of a bead this far beyond its edge, in bead widths: less than a quarter of what is welded there lies on it.
 const CLEAR: f64 = 0.25;
-/// A new island in the air is left out up to this area, in squared bead widths, and up to this part of its layer.
+/// A new island in the air is left out up to this area, in squared bead widths, and up to this part of its layer where that
+/// has others.
 const SMALL: f64 = 4.0;
 const SMALL_PART: f64 = 0.5;
 /// A pass in the air is left out up to this length, in bead widths.
@@ -30,7 +31,7 @@ const RESTS: f64 = 0.05;
 /// What lies below the next layer.
 #[derive(Default)]
 pub(super) struct Support {
-    /// The passes of the layer below; none before the first layer, which lies on the plate.
+    /// The passes of the layer below.
     passes: Vec<Pass>,
     /// Its outlines, and those of them that were left out because they hang.
     islands: Vec<Polygon>,
@@ -39,6 +40,8 @@ pub(super) struct Support {
     before: (Vec<Pass>, Vec<Polygon>),
     /// Height of its middle, mm.
     middle: f64,
+    /// Whether anything is welded yet.
+    begun: bool,
     footing: Footing,
 }
 
@@ -108,7 +111,7 @@ impl Support {
             self.islands.append(&mut self.before.1);
         }
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
-        let on_plate = self.footing.plate && self.passes.is_empty();
+        let on_plate = self.footing.plate && !self.begun;
         if !on_plate && !alike {
             let (metal, there) = (Metal::of(&self.passes, width), self.there(layer, profile));
             let below = if solid { &there[..] } else { &[&there[..], &self.islands[..]].concat()[..] };
@@ -128,6 +131,7 @@ impl Support {
         let passes = std::mem::replace(&mut self.passes, layer.passes.clone());
         self.before = (passes, std::mem::replace(&mut self.islands, layer.islands.clone()));
         self.middle = layer.middle();
+        self.begun |= !layer.passes.is_empty();
     }
 
     /// Whether an island of the layer that was judged last was left out.
@@ -144,7 +148,10 @@ impl Support {
         let start = |pass: &Pass| pass.start().unwrap_or_default().truncate();
         let island_of = |pass: &Pass| layer.islands.iter().position(|island| island.contains(start(pass)));
         let of: Vec<Option<usize>> = layer.passes.iter().map(island_of).collect();
-        let largest = (SMALL * width * width).min(SMALL_PART * layer.islands.iter().map(Polygon::area).sum::<f64>());
+        let area = layer.islands.iter().map(Polygon::area).sum::<f64>();
+        // Above a layer without room for a bead, all islands are new.
+        let part = if self.passes.is_empty() { 1.0 } else { SMALL_PART };
+        let largest = (SMALL * width * width).min(part * area);
         let small = |i: usize| {
             let island = &layer.islands[i];
             let all = of.iter().zip(hanging).all(|(of, hanging)| *of != Some(i) || hanging.is_some());

@@ -137,3 +137,19 @@ fn a_layer_that_hangs_is_not_left_out() {
     assert!(warning(&plan, WarningKind::HangingIsland).is_none());
     assert_eq!(plan.summary.forbidden.len(), 1);
 }
+
+/// The tip of an ear above a neck without room for a bead is left out; more above such a neck refuses the plan.
+#[test]
+fn a_tip_above_a_neck_is_left_out() {
+    let neck = [(20.0, 20.5), (20.0, 20.5), (12.0, 14.0)];
+    for degrees in [0.0, 31.0] {
+        let tip = [(16.0, 25.0), (16.0, 25.0), (14.0, 16.0)];
+        let plan = planned(&blocks(&[BASE, neck, tip], degrees), "loop");
+        assert_eq!(warning(&plan, WarningKind::HangingIsland).unwrap().layers, [(7, 7)]);
+        assert_eq!(plan.summary.forbidden, [] as [String; 0]);
+        let column = [(16.0, 25.0), (16.0, 25.0), (14.0, 20.0)];
+        let plan = planned(&blocks(&[BASE, neck, column], degrees), "loop");
+        let below = warning(&plan, WarningKind::NothingBelow).unwrap();
+        assert_eq!(plan.summary.forbidden, [below.sentence()], "what hangs is reported once");
+    }
+}
