@@ -421,3 +421,27 @@ fn a_quarter_turn_of_a_square_is_the_square() {
     let (a, b) = (length(&square), length(&moved(&square, |p| way.rotate(p))));
     assert!((a / b - 1.0).abs() < 0.01, "{a} and {b} mm");
 }
+
+/// Where a hole comes as near to the rim as one thin bead, that bead is laid once, with the same single arc start.
+#[test]
+fn a_neck_beside_a_hole_has_one_bead() {
+    let profile = profile("cmt-al2319-kuka");
+    for neck in [3.9, 4.2, 4.5, 4.8, 5.1, 5.6] {
+        for degrees in [0.0, 33.0, 117.0] {
+            let hole = circle((0.0, neck - 33.0), 42.0, 48, -1.0);
+            let island =
+                turned(&Polygon { outer: rectangle((-60.0, -75.0), (60.0, 75.0)), holes: vec![hole] }, degrees);
+            let passes = looped(&island, &profile);
+            let place = format!("a neck of {neck} mm, turned by {degrees}°");
+            assert_eq!(passes.len(), 1, "{place}");
+            let middle = DVec2::from_angle(f64::to_radians(degrees)).rotate(DVec2::new(0.0, -75.0 + neck / 2.0));
+            let (half, way) = (DVec2::from_angle(f64::to_radians(degrees + 90.0)) * neck, passes[0].path());
+            let across = |ends: &[DVec2]| {
+                let (u, v, w) = (2.0 * half, ends[1] - ends[0], ends[0] - (middle - half));
+                let [t, s] = [w.perp_dot(v), w.perp_dot(u)].map(|x| x / u.perp_dot(v));
+                (0.0..1.0).contains(&t) && (0.0..1.0).contains(&s)
+            };
+            assert_eq!(way.windows(2).filter(|ends| across(ends)).count(), 1, "{place}");
+        }
+    }
+}

@@ -64,8 +64,8 @@ pub struct Split {
 
 /// Minimum length of a wall that is attached at one end only, or tapers to nothing, in bead widths.
 const SHORTEST: f64 = 1.5;
-/// Minimum length of a neck thinner than the narrowest bead, such as one between two holes, in bead widths: passes go around
-/// shorter ones.
+/// Minimum length of one of several necks thinner than the narrowest bead, such as those between holes, in bead widths: a bead for
+/// each would cost an arc start, so passes go through both sides of shorter ones.
 const NECK: f64 = 3.0;
 /// Minimum area of a thin piece, in squared bead widths.
 const SMALLEST: f64 = 0.15;
@@ -190,7 +190,6 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
     let between = Between::of(&thick);
     let rest = whole.difference(&Region::from_normalised(thick));
     let smallest = SMALLEST * limits.bead_width * limits.bead_width;
-    let (mut thin, mut pieces) = (Vec::new(), Vec::new());
     // Most pieces are corners, in which no bead could lie.
     let roomy = |piece: &Polygon| piece.area() > smallest && piece.holds_disc(ROOMY * limits.thinnest / 2.0);
     let candidates = rest.into_polygons().into_iter().map(|piece| (!roomy(&piece), piece));
@@ -198,13 +197,18 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
         candidates.filter(|(short, piece)| !short || between.joins(piece)).unzip();
     let axis = axis(&candidates, &whole, limits);
     let alone = open.polygons().is_empty();
-    for (piece, short) in candidates.into_iter().zip(short) {
-        let walls = walls(&piece, Neck { short, alone }, &axis, limits);
-        if !walls.is_empty() {
-            thin.extend(walls);
-            pieces.push(piece);
-        }
-    }
+    let welded = |through: bool| -> Vec<(Vec<ThinWall>, &Polygon)> {
+        let pieces = candidates.iter().zip(&short);
+        let walls = pieces.map(|(piece, &short)| (walls(piece, Neck { short, through }, &axis, limits), piece));
+        walls.filter(|(walls, _)| !walls.is_empty()).collect()
+    };
+    // A single wall from passes to passes opens their loop, and costs no arc start.
+    let single = |welded: &[(Vec<ThinWall>, &Polygon)]| matches!(welded, [(walls, _)] if walls.len() == 1);
+    let every = welded(true);
+    let welded = if alone || single(&every) { every } else { welded(false) };
+    let (thin, pieces): (Vec<Vec<ThinWall>>, Vec<Polygon>) =
+        welded.into_iter().map(|(walls, piece)| (walls, piece.clone())).unzip();
+    let thin = thin.concat();
     if thin.is_empty() {
         let thick = Some(island.clone()).filter(|island| needs_two(&island)).into_iter().collect();
         return Split { thick, thin, open };
@@ -272,8 +276,8 @@ fn axis(pieces: &[Polygon], whole: &Region, limits: &ThinLimits) -> MedialAxis {
 struct Neck {
     /// The piece is a neck between two thick parts, and hardly longer than thick.
     short: bool,
-    /// The island has no thick part that passes could fill instead: its walls go through the shortest neck.
-    alone: bool,
+    /// Walls go through the shortest neck: the island has no thick part that passes could fill instead, or no other wall.
+    through: bool,
 }
 
 /// The walls of a thin piece.
@@ -301,7 +305,7 @@ fn walls_along(branch: &Branch, piece: &Polygon, neck: Neck, limits: &ThinLimits
     let is_long = |stretch: &Range<usize>| {
         let wider = |k: Option<usize>| k.filter(|k| *k < nodes.len()).is_some_and(|k| fits[k] || !inside[k]);
         let is_neck = wider(stretch.start.checked_sub(1)) && wider(Some(stretch.end));
-        let least = match (is_neck, neck.alone) {
+        let least = match (is_neck, neck.through) {
             (true, true) => 0.0,
             (true, false) => NECK,
             (false, _) => SHORTEST,
