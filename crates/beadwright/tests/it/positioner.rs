@@ -11,7 +11,7 @@ use beadwright::layer::Layer;
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan;
 use beadwright::profile::{Body, Profile};
-use beadwright::program::{Positioner, PositionerAxis, Turning};
+use beadwright::program::{MACHINES, Machine, Positioner, PositionerAxis, Turning};
 use beadwright::task::Task;
 use common::{profile, with_all_dialects};
 use glam::{DMat3, DQuat, DVec3};
@@ -446,6 +446,71 @@ fn what_a_positioner_cannot_be_is_refused() {
         let refused = dialect::write(post, &layers, &profile.job("demo")).unwrap_err().to_string();
         assert!(refused.contains(key) && refused.contains("program.positioner"), "{refused}");
     }
+}
+
+/// A profile that turns the part with these lines.
+fn with_lines(lines: &str) -> Result<Profile, String> {
+    let text = Profile::built_in_text("cmt-al2319-kuka").unwrap().to_owned() + "\n[program.positioner]\n" + lines;
+    Profile::parse(&text).map_err(|error| error.to_string())
+}
+
+#[test]
+fn every_built_in_positioner_can_be_named_or_copied() {
+    for (name, text) in MACHINES {
+        let named = with_lines(&format!("turning = \"index\"\nmachine = \"{name}\"\n")).unwrap();
+        let copied: String =
+            text.lines().filter(|line| !line.starts_with("description")).map(|l| l.to_owned() + "\n").collect();
+        assert_eq!(named, with_lines(&format!("turning = \"index\"\n{copied}")).unwrap(), "{name}");
+        let machine = Machine::built_in(name).unwrap();
+        assert!(machine.description.len() > 20 && text.contains("(ours)") || text.contains("github"), "{name}");
+        // What is written out is read again.
+        assert_eq!(Profile::parse(&named.toml_text().unwrap()).unwrap(), named);
+    }
+}
+
+/// Heights above the floor, mm, as the sources of the files give them: the plate lies level at 857, 900 and 639.5, and tilted by
+/// a quarter its middle comes to the height of the tilt axis, beside it by the distance between them.
+#[test]
+fn plates_lie_where_their_sources_have_them() {
+    for (name, axis, plate) in [
+        ("kuka-dkp-400", 510.0, 857.0),
+        ("abb-irbp-a250", 1020.0, 900.0),
+        ("yaskawa-mt1-500", 475.0, 639.5),
+        ("trunnion-ac", 0.0, 0.0),
+        ("trunnion-bc", 0.0, 0.0),
+    ] {
+        let Machine { axes, up, .. } = Machine::built_in(name).unwrap();
+        let positioner = Positioner { turning: Turning::Index, axes, up };
+        assert_eq!(positioner.up, [0.0, 0.0, 1.0], "{name}");
+        let tilted = positioner.held([90.0, 0.0]);
+        assert!((plate + tilted.shift.z - axis).abs() < 1e-9, "{name}: {}", tilted.shift);
+        let beside = tilted.shift.truncate().length();
+        assert!((beside - f64::abs(plate - axis)).abs() < 1e-9, "{name}: {}", tilted.shift);
+        assert!((tilted.turn * DVec3::Z).z.abs() < 1e-9, "{name}: the plate stands upright");
+        // The other axis leaves the plate where it is.
+        let turned = positioner.held([0.0, 90.0]);
+        assert!(turned.shift.length() < 1e-9 && (turned.turn * DVec3::Z).distance(DVec3::Z) < 1e-9, "{name}");
+    }
+}
+
+#[test]
+fn a_positioner_is_named_or_described() {
+    let refused = |lines: &str| with_lines(&format!("turning = \"follow\"\n{lines}\n")).unwrap_err();
+    let axes = "axes = [{ direction = [0, 0, 1], limits = [-90, 90], speed = 60 }]";
+    let unknown = refused("machine = \"kuka-dkp400\"");
+    assert!(
+        unknown.ends_with("there is no built-in positioner \"kuka-dkp400\". Did you mean \"kuka-dkp-400\"?"),
+        "{unknown}"
+    );
+    let line = Profile::built_in_text("cmt-al2319-kuka").unwrap().lines().count() + 2;
+    assert!(unknown.starts_with(&format!("line {line} of the profile: ")), "{unknown}");
+    assert!(refused("machine = \"x\"").contains("Known: kuka-dkp-400, "), "{}", refused("machine = \"x\""));
+    for both in [format!("machine = \"kuka-dkp-400\"\n{axes}"), "machine = \"trunnion-ac\"\nup = [0, 0, 1]".to_owned()]
+    {
+        assert!(refused(&both).contains("stands for \"axes\" and \"up\": remove it or them."), "{}", refused(&both));
+    }
+    assert!(refused("").contains("needs the key \"machine\" or \"axes\"."), "{}", refused(""));
+    assert!(with_lines(&format!("turning = \"follow\"\n{axes}\n")).is_ok());
 }
 
 /// `reach` follows the part as it turns, about the lines of the axes: the tool's tip is where the part has been turned to, and the wire
