@@ -43,14 +43,16 @@ fn tilting(turning: Turning) -> Positioner {
     Positioner { turning, axes, up: [0.0, 0.0, 1.0] }
 }
 
+type Layers = Arc<Vec<Layer>>;
+
 /// The first layers of each body of an example, planned once, with a profile for all dialects.
-fn planned(name: &'static str) -> (Arc<Vec<Layer>>, Profile) {
+fn planned(name: &'static str) -> (Layers, Profile) {
     planned_at(name, 0, DVec3::ZERO)
 }
 
 /// The same of a part that is turned about z, °, and then shifted, mm, in its own space.
-fn planned_at(name: &'static str, degrees: i32, shift: DVec3) -> (Arc<Vec<Layer>>, Profile) {
-    static PLANS: Mutex<BTreeMap<(&str, i32), Arc<Vec<Layer>>>> = Mutex::new(BTreeMap::new());
+fn planned_at(name: &'static str, degrees: i32, shift: DVec3) -> (Layers, Profile) {
+    static PLANS: Mutex<BTreeMap<(&str, i32), Layers>> = Mutex::new(BTreeMap::new());
     let example = example::find(name).unwrap();
     let turn = about(DVec3::Z, f64::from(degrees));
     let mut profile = profile("cmt-al2319-kuka");

@@ -275,13 +275,7 @@ impl Step {
 impl Holder {
     /// A positioner as in the profile, at 0; `None` without one.
     pub(super) fn new(positioner: Option<&Positioner>, travel_speed: f64) -> Option<Self> {
-        positioner.map(|own| Self {
-            positioner: own.clone(),
-            angles: [0.0; 2],
-            at: None,
-            travel_speed,
-            waited: 0.0,
-        })
+        positioner.map(|own| Self { positioner: own.clone(), angles: [0.0; 2], at: None, travel_speed, waited: 0.0 })
     }
 
     /// How long travels have had to wait for the axes so far, s.
