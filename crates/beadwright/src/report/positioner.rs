@@ -8,8 +8,9 @@ use glam::DVec2;
 
 /// Maximum number of stretches of a curve, each of some passes.
 const STRETCHES: usize = 300;
-/// A limit so far from all angles is not drawn, °: it would flatten the curve.
-const FAR: f64 = 180.0;
+/// Limits are drawn where they lie no farther apart than this many times the range that is used, or half a turn, °.
+const WIDE: f64 = 4.0;
+const HALF_TURN: f64 = 180.0;
 
 /// Follows a positioner through a plan.
 #[derive(Debug, Clone)]
@@ -103,14 +104,11 @@ impl Turns {
         stretches.flatten().collect()
     }
 
-    /// The range between the limits, as far as they are near.
+    /// The range between the limits, unless it would flatten the curve.
     fn within(&self, number: usize, axis: &PositionerAxis) -> Option<(f64, f64, String)> {
         let whole = self.passes.iter().map(|pass| pass[number]).reduce(Stretch::with)?;
-        let room = (whole.most - whole.least).max(FAR);
         let [least, most] = axis.limits;
-        let (low, high) = (least >= whole.least - room, most <= whole.most + room);
-        let end = |near: bool, limit: f64, angle: f64| if near { limit } else { angle };
-        let word = "within its limits".to_owned();
-        (low || high).then(|| (end(low, least, whole.least), end(high, most, whole.most), word))
+        let near = most - least <= WIDE * (whole.most - whole.least).max(HALF_TURN);
+        near.then(|| (least, most, "within its limits".to_owned()))
     }
 }

@@ -339,7 +339,7 @@ fn the_time_of_turns_between_passes_counts() {
     }
 }
 
-/// The report shows each axis over the passes, with the limits that are near.
+/// The report shows each axis over the passes, with its limits unless they are far away.
 #[test]
 fn the_report_shows_the_angles_of_the_axes() {
     let page = |positioner: Option<Positioner>| {
