@@ -2,11 +2,12 @@
 
 use crate::file;
 use crate::say::Findings;
-use anyhow::Context;
+use anyhow::{Context, Error};
 use beadwright::check;
 use beadwright::dialect::{DialectError, Job};
 use beadwright::files::{self, Programs, write_file};
 use beadwright::profile::{BUILT_IN, Profile, ProfileError, edit};
+use beadwright::program::{MACHINES, Machine};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -30,6 +31,11 @@ pub(crate) enum Command {
     Check {
         /// Name of a built-in profile, or a TOML file.
         profile: String,
+    },
+    /// List the built-in positioners, or print one: a name for `program.positioner.machine`, or its axes to copy and edit.
+    Positioner {
+        /// Name of the positioner.
+        name: Option<String>,
     },
     /// Print the JSON schema of profiles, for editors.
     Schema,
@@ -77,6 +83,14 @@ pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
             if !found.is_empty() {
                 return Err(Findings { count: found.len(), place: PathBuf::from(profile) }.into());
             }
+        }
+        Command::Positioner { name: None } => {
+            for (name, _) in MACHINES {
+                writeln!(out, "{name:<18} {}", Machine::built_in(name).map_err(Error::msg)?.description)?;
+            }
+        }
+        Command::Positioner { name: Some(name) } => {
+            write!(out, "{}", Machine::built_in_text(name).map_err(Error::msg)?)?;
         }
         Command::Schema => writeln!(out, "{:#}", Profile::schema())?,
     }

@@ -5,6 +5,7 @@ use crate::chart::Chart;
 use crate::layer::Layer;
 use crate::process::Cost;
 use crate::profile::{LayersSection, Profile};
+use crate::program::Programmer;
 use crate::slice::Half;
 use crate::weld::{Pause, Torch, path};
 use serde::{Deserialize, Serialize};
@@ -26,7 +27,7 @@ pub struct Metrics {
     pub arc_time_s: f64,
     /// Waits between layers and passes, s.
     pub dwell_time_s: f64,
-    /// Total time with travels, delays, gas and waits, s; with acceleration where the profile gives it.
+    /// Total time with travels, delays, gas, waits and turns of a positioner, s; with acceleration where the profile gives it.
     pub total_time_s: f64,
     /// Wire, including that of overlaps, hot starts and craters, m.
     pub wire_length_m: f64,
@@ -62,6 +63,8 @@ pub struct Metrics {
     rates: Rates,
     #[serde(skip)]
     torch: Torch,
+    #[serde(skip)]
+    turns: Turns,
     /// Volume of the layer below, mm³.
     #[serde(skip)]
     below: f64,
@@ -122,6 +125,7 @@ impl Metrics {
             deposited_volume_mm3: 0.0,
             rates,
             torch: Torch::of(&profile.weld_settings()),
+            turns: Turns(profile.program.positioner.is_some().then(|| profile.programmer())),
             below: 0.0,
         }
     }
@@ -176,6 +180,7 @@ impl Metrics {
             let idle = if layer.lit.before { 0.0 } else { self.rates.gas_idle };
             self.gas_m3 += (welded.moving + welded.crater + idle) * self.rates.gas;
         }
+        self.total_time_s += self.turns.waits(layer);
         self.cost = self.rates.cost.of(self.total_time_s / 3600.0, self.wire_mass_kg, self.gas_m3);
     }
 
@@ -196,5 +201,26 @@ impl Metrics {
     /// Planned area over slice area, 0 to 1.
     pub fn coverage(&self) -> f64 {
         if self.slice_area_mm2 > 0.0 { self.planned_area_mm2 / self.slice_area_mm2 } else { 0.0 }
+    }
+}
+
+/// Makes the program where travels may have to wait until a positioner has turned the part.
+#[derive(Debug, Clone, Default)]
+struct Turns(Option<Programmer>);
+
+impl Turns {
+    /// How long the travels of the next layer wait, s.
+    fn waits(&mut self, layer: &Layer) -> f64 {
+        let Some(programmer) = &mut self.0 else { return 0.0 };
+        let before = programmer.waited();
+        programmer.layer(layer);
+        programmer.waited() - before
+    }
+}
+
+/// Totals are alike whatever is still to come.
+impl PartialEq for Turns {
+    fn eq(&self, _: &Self) -> bool {
+        true
     }
 }

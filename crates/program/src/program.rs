@@ -6,6 +6,7 @@
 //! arc: `Weld` is then only a move along the path, since no `ArcOn` came before it.
 
 mod attitude;
+mod machine;
 mod placed;
 mod positioner;
 mod safety;
@@ -18,6 +19,7 @@ mod turns;
 mod weave;
 
 pub use attitude::Attitude;
+pub use machine::{MACHINES, Machine};
 use positioner::Holder;
 pub use positioner::{Held, Positioner, PositionerAxis, Turning};
 pub use safety::Safety;
@@ -250,7 +252,7 @@ impl Programmer {
         let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker() || other_layers;
         let (torch, restarts) = (Torch::of(weld), program.restart);
         let (tilt, table) = (Tilt::new(program), Follower::new(program));
-        let positioner = Holder::new(program.positioner.as_ref());
+        let positioner = Holder::new(program.positioner.as_ref(), weld.travel.speed);
         let own = Self::new(weld.travel.clearance);
         let programmer = Self { torch, sets_feed, restarts, dry, tilt, table, positioner, ..own };
         programmer.with_fit(program)
@@ -328,6 +330,11 @@ impl Programmer {
             instructions.retain(kept);
         }
         LayerProgram { index: layer.index, z: layer.z, instructions }
+    }
+
+    /// How much longer the travels between passes have taken so far because the part had to be turned, s.
+    pub fn waited(&self) -> f64 {
+        self.positioner.as_ref().map_or(0.0, Holder::waited)
     }
 
     /// Takes note of a layer that another program lays; the torch leans with the walls built on it.

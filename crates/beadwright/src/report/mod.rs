@@ -11,6 +11,7 @@
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
 //! | [`angles`] | plots over the raster angle |
 //! | [`bead_window`] | width/height of a bead library over its first input |
+//! | `positioner` | the angles of the axes that turn the part |
 //! | [`overhang`] | overhanging faces, seen from below |
 //! | [`reach`] | joint angles and margins over a program |
 //! | [`steps`] | the steps of the hybrid and of the loop as pictures |
@@ -26,6 +27,7 @@ pub mod encode;
 mod lie;
 pub mod overhang;
 pub mod plot;
+mod positioner;
 pub mod reach;
 pub mod rows;
 pub mod sheet;
@@ -77,6 +79,7 @@ pub struct Report {
     /// For each layer: arc, waits, and the rest of its time, s.
     times: Vec<[f64; 3]>,
     clock: Metrics,
+    turns: Option<positioner::Turns>,
     widths: Range,
     speeds: Range,
     kinds: BTreeSet<PassKind>,
@@ -97,6 +100,7 @@ impl Report {
             warmth: Vec::new(),
             times: Vec::new(),
             clock: Metrics::new(profile),
+            turns: positioner::Turns::new(profile),
             widths: Range::default(),
             speeds: Range::default(),
             kinds: BTreeSet::new(),
@@ -128,6 +132,7 @@ impl Report {
         let now = |clock: &Metrics| [clock.arc_time_s, clock.dwell_time_s, clock.total_time_s];
         let before = now(&self.clock);
         self.clock.add(layer);
+        self.turns.iter_mut().for_each(|turns| turns.layer(layer));
         let after = now(&self.clock);
         let [arc, wait, whole] = [0, 1, 2].map(|i| after[i] - before[i]);
         self.times.push([arc, wait, (whole - arc - wait).max(0.0)]);
@@ -153,6 +158,7 @@ impl Report {
             ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
             ("process", tables::process(header, profile)),
             ("angles", angles::section(&self.middle, profile)),
+            ("positioner", self.turns.as_ref().map(positioner::Turns::section).unwrap_or_default()),
             ("model", tables::model(repair)),
             ("files", tables::files(files)),
             ("warnings", tables::warnings(summary, findings)),

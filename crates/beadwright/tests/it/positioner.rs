@@ -4,14 +4,18 @@
 use crate::common;
 use crate::readers;
 
+use beadwright::chart::{Chart, Cylinder, Guide};
 use beadwright::dialect::gcode::GcodePositioner;
 use beadwright::dialect::{self, reading};
 use beadwright::example;
 use beadwright::layer::Layer;
+use beadwright::metrics::Metrics;
+use beadwright::model::RepairReport;
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan;
 use beadwright::profile::{Body, Profile};
-use beadwright::program::{Positioner, PositionerAxis, Turning};
+use beadwright::program::{MACHINES, Machine, Positioner, PositionerAxis, Turning};
+use beadwright::report::Report;
 use beadwright::task::Task;
 use common::{profile, with_all_dialects};
 use glam::{DMat3, DQuat, DVec3};
@@ -39,14 +43,25 @@ fn tilting(turning: Turning) -> Positioner {
     Positioner { turning, axes, up: [0.0, 0.0, 1.0] }
 }
 
+type Layers = Arc<Vec<Layer>>;
+
 /// The first layers of each body of an example, planned once, with a profile for all dialects.
-fn planned(name: &'static str) -> (Arc<Vec<Layer>>, Profile) {
-    static PLANS: Mutex<BTreeMap<&str, Arc<Vec<Layer>>>> = Mutex::new(BTreeMap::new());
+fn planned(name: &'static str) -> (Layers, Profile) {
+    planned_at(name, 0, DVec3::ZERO)
+}
+
+/// The same of a part that is turned about z, °, and then shifted, mm, in its own space.
+fn planned_at(name: &'static str, degrees: i32, shift: DVec3) -> (Layers, Profile) {
+    static PLANS: Mutex<BTreeMap<(&str, i32), Layers>> = Mutex::new(BTreeMap::new());
     let example = example::find(name).unwrap();
+    let turn = about(DVec3::Z, f64::from(degrees));
     let mut profile = profile("cmt-al2319-kuka");
     profile.layers.bodies = Body::read(&example.bodies().unwrap()).unwrap();
-    let layers = Arc::clone(PLANS.lock().unwrap().entry(name).or_insert_with(|| {
-        let plan = plan::plan(name, &example.mesh(), &profile, &Task::new()).unwrap();
+    profile.layers.bodies.iter_mut().for_each(|body| body.chart = moved(&body.chart, turn, shift));
+    let layers = Arc::clone(PLANS.lock().unwrap().entry((name, degrees)).or_insert_with(|| {
+        let mut mesh = example.mesh();
+        mesh.vertices.iter_mut().for_each(|p| *p = turn * *p + shift);
+        let plan = plan::plan(name, &mesh, &profile, &Task::new()).unwrap();
         let of = |body: usize| plan.layers.iter().filter(move |layer| layer.body == body && !layer.passes.is_empty());
         let bodies = profile.layers.bodies.len();
         Arc::new((0..bodies).flat_map(|body| of(body).step_by(1 + of(body).count() / 4)).cloned().collect())
@@ -57,6 +72,22 @@ fn planned(name: &'static str) -> (Arc<Vec<Layer>>, Profile) {
     profile.dialects.rapid.as_mut().unwrap().speed_step = 0.001;
     profile.dialects.fanuc.as_mut().unwrap().table_group = Some(2);
     (layers, profile)
+}
+
+/// A chart turned and shifted with its part.
+fn moved(chart: &Chart, turn: DMat3, shift: DVec3) -> Chart {
+    let place = |p: DVec3| turn * p + shift;
+    match chart.clone() {
+        Chart::Cylinder(own) => Chart::Cylinder(Cylinder { axis: turn * own.axis, through: place(own.through), ..own }),
+        Chart::Guide(own) => {
+            let points = own.points().iter().map(|p| place(*p)).collect();
+            Chart::Guide(Arc::new(Guide::new(points, own.radii().to_vec()).unwrap()))
+        }
+        other => {
+            assert!(turn == DMat3::IDENTITY && shift == DVec3::ZERO);
+            other
+        }
+    }
 }
 
 fn read(post: &str, layers: &[Layer], profile: &Profile) -> Motion {
@@ -226,6 +257,110 @@ fn a_torch_that_cannot_turn_welds_the_planned_path_on_a_part_that_does() {
         let translated = other.replace("=", "").replace("TRAORI", "M428").replace("TRAFOOF", "M429");
         assert_eq!(translated, text.replace("=", ""), "{case}");
     }
+}
+
+/// However the part lies in its own space, beside the axes and turned about z, robots and machines weld what was planned, with the wire
+/// straight down and within the limits.
+#[test]
+fn a_part_that_lies_elsewhere_is_welded_alike() {
+    let shift = DVec3::new(35.0, -20.0, 12.0);
+    for (name, degrees) in [("elbow", 37), ("elbow", 200), ("hub", 37), ("hub", 200)] {
+        let (layers, plain) = planned_at(name, degrees, shift);
+        let by_torch = read("krl", &layers, &plain).welds;
+        let as_it_was = planned(name);
+        let expected =
+            about(DVec3::Z, f64::from(degrees)) * centre(&read("krl", &as_it_was.0, &as_it_was.1).welds) + shift;
+        assert!(centre(&by_torch).distance(expected) < 3.0, "{name} {degrees}: {} {expected}", centre(&by_torch));
+        let positioner = tilting(Turning::Follow);
+        let mut turned = plain.clone();
+        turned.program.positioner = Some(positioner.clone());
+        let robot = read("krl", &layers, &turned).welds;
+        same_path(&format!("{name} {degrees}° krl"), &by_torch, &robot);
+        let files = dialect::write("gcode", &layers, &machine(&plain, &positioner, &["A", "C"]).job("demo")).unwrap();
+        let cnc = readers::gcode::run(&files.into_values().next().unwrap(), 3, 5).welds;
+        same_path(&format!("{name} {degrees}° gcode"), &by_torch, &cnc);
+        let (mut worst, mut reached) = (0.0_f64, [[f64::MAX, f64::MIN]; 2]);
+        for (weld, other) in robot.iter().zip(&by_torch).chain(cnc.iter().zip(&by_torch)) {
+            let tools = weld.tools.iter().zip(&other.tools);
+            worst = tools.map(|(a, b)| (*a * DVec3::Z).angle_between(*b * DVec3::Z).to_degrees()).fold(worst, f64::max);
+        }
+        worst = robot.iter().map(|weld| off_plumb(weld, &positioner)).fold(worst, f64::max);
+        for axes in robot.iter().flat_map(|weld| &weld.axes) {
+            for (range, angle) in reached.iter_mut().zip(axes) {
+                *range = [range[0].min(angle.unwrap()), range[1].max(angle.unwrap())];
+            }
+        }
+        println!("{name} turned by {degrees}°: the wire is off by {worst:.4}°, axes {reached:.1?}°");
+        assert!(worst <= 0.05, "{name} {degrees}: {worst}°");
+        let within =
+            |(range, axis): (&[f64; 2], &PositionerAxis)| axis.limits[0] <= range[0] && range[1] <= axis.limits[1];
+        assert!(reached.iter().zip(&positioner.axes).all(within), "{name} {degrees}: {reached:?}");
+    }
+}
+
+/// The middle of all that is welded.
+fn centre(welds: &[Weld]) -> DVec3 {
+    let (mut middle, mut length) = (DVec3::ZERO, 0.0);
+    for pair in welds.iter().flat_map(|weld| weld.points.windows(2)) {
+        let [from, to] = [0, 1].map(|k| DVec3::from(pair[k]));
+        middle += (from + to) / 2.0 * from.distance(to);
+        length += from.distance(to);
+    }
+    middle / length
+}
+
+/// What the axes turn between passes, read from a program, is in the plan's time, but for the travels on the way.
+#[test]
+fn the_time_of_turns_between_passes_counts() {
+    for (name, turning) in [("y-tube", Turning::Index), ("elbow", Turning::Follow), ("hub", Turning::Follow)] {
+        let (layers, mut profile) = planned(name);
+        let mut seconds = |speed: f64| {
+            let mut positioner = tilting(turning);
+            positioner.axes.iter_mut().for_each(|axis| axis.speed = speed);
+            profile.program.positioner = (speed > 0.0).then_some(positioner);
+            let mut metrics = Metrics::new(&profile);
+            layers.iter().for_each(|layer| metrics.add(layer));
+            (metrics.total_time_s, read("krl", &layers, &profile).welds)
+        };
+        let ((slow, welds), (slower, _), (fast, _), (none, _)) =
+            (seconds(0.02), seconds(0.01), seconds(1e4), seconds(0.0));
+        let farthest = |pair: &[Weld]| {
+            let (from, to) = (pair[0].axes.last().unwrap(), pair[1].axes[0]);
+            (0..2).map(|k| (to[k].unwrap() - from[k].unwrap()).abs()).fold(0.0, f64::max)
+        };
+        let turned: f64 = welds.windows(2).map(farthest).sum();
+        let (found, expected) = (slower - slow, turned / 0.02);
+        println!(
+            "{name}: {turned:.1}° between passes, {:.1} s longer at 0.02°/s, {found:.1} s more at 0.01°/s",
+            slow - none
+        );
+        assert!(turned > 1.0 && (found / expected - 1.0).abs() < 1e-3, "{name}: {found} s, {expected} s");
+        assert!(slow - none < expected && (fast - none).abs() < 1e-6, "{name}: {slow} {fast} {none}");
+    }
+}
+
+/// The report shows each axis over the passes, with its limits unless they are far away.
+#[test]
+fn the_report_shows_the_angles_of_the_axes() {
+    let page = |positioner: Option<Positioner>| {
+        let (_, mut profile) = planned("y-tube");
+        profile.program.positioner = positioner;
+        let plan = plan::plan("y-tube", &example::find("y-tube").unwrap().mesh(), &profile, &Task::new()).unwrap();
+        let mut report = Report::new(&plan.header, &profile);
+        plan.layers.iter().for_each(|layer| report.layer(layer, None));
+        report.finish(&plan.summary, &RepairReport::default(), &[], &[])
+    };
+    let with = page(Some(tilting(Turning::Index)));
+    // The arms are welded on slopes of 14°, to either side of the trunk; the table turns them towards the axis that tilts.
+    for words in [
+        "<h2>Positioner</h2>",
+        "Axis 1, limits -135° to 135°: angle, ° over passes welded; axis 1 -14.00 to 14.00",
+        "turned between passes",
+    ] {
+        assert!(with.contains(words), "{words}");
+    }
+    assert_eq!(with.matches("within its limits").count(), 1, "those of the table are too far away");
+    assert!(!page(None).contains("<h2>Positioner</h2>"));
 }
 
 /// A program that can begin at any pass turns the part from its beginning as one that cannot.
@@ -446,6 +581,70 @@ fn what_a_positioner_cannot_be_is_refused() {
         let refused = dialect::write(post, &layers, &profile.job("demo")).unwrap_err().to_string();
         assert!(refused.contains(key) && refused.contains("program.positioner"), "{refused}");
     }
+}
+
+/// A profile that turns the part with these lines.
+fn with_lines(lines: &str) -> Result<Profile, String> {
+    let text = Profile::built_in_text("cmt-al2319-kuka").unwrap().to_owned() + "\n[program.positioner]\n" + lines;
+    Profile::parse(&text).map_err(|error| error.to_string())
+}
+
+#[test]
+fn every_built_in_positioner_can_be_named_or_copied() {
+    for (name, text) in MACHINES {
+        let named = with_lines(&format!("turning = \"index\"\nmachine = \"{name}\"\n")).unwrap();
+        let copied: String =
+            text.lines().filter(|line| !line.starts_with("description")).map(|l| l.to_owned() + "\n").collect();
+        assert_eq!(named, with_lines(&format!("turning = \"index\"\n{copied}")).unwrap(), "{name}");
+        assert!(Machine::built_in(name).unwrap().description.len() > 20, "{name}");
+        // What is written out is read again.
+        assert_eq!(Profile::parse(&named.toml_text().unwrap()).unwrap(), named);
+    }
+}
+
+/// Heights above the floor, mm, as the sources of the files give them: the plate lies level at 857, 900 and 639.5, and tilted by
+/// a quarter its middle comes to the height of the tilt axis, beside it by the distance between them.
+#[test]
+fn plates_lie_where_their_sources_have_them() {
+    for (name, axis, plate) in [
+        ("kuka-dkp-400", 510.0, 857.0),
+        ("abb-irbp-a250", 1020.0, 900.0),
+        ("yaskawa-mt1-500", 475.0, 639.5),
+        ("trunnion-ac", 0.0, 0.0),
+        ("trunnion-bc", 0.0, 0.0),
+    ] {
+        let Machine { axes, up, .. } = Machine::built_in(name).unwrap();
+        let positioner = Positioner { turning: Turning::Index, axes, up };
+        assert_eq!(positioner.up, [0.0, 0.0, 1.0], "{name}");
+        let tilted = positioner.held([90.0, 0.0]);
+        assert!((plate + tilted.shift.z - axis).abs() < 1e-9, "{name}: {}", tilted.shift);
+        let beside = tilted.shift.truncate().length();
+        assert!((beside - f64::abs(plate - axis)).abs() < 1e-9, "{name}: {}", tilted.shift);
+        assert!((tilted.turn * DVec3::Z).z.abs() < 1e-9, "{name}: the plate stands upright");
+        // The other axis leaves the plate where it is.
+        let turned = positioner.held([0.0, 90.0]);
+        assert!(turned.shift.length() < 1e-9 && (turned.turn * DVec3::Z).distance(DVec3::Z) < 1e-9, "{name}");
+    }
+}
+
+#[test]
+fn a_positioner_is_named_or_described() {
+    let refused = |lines: &str| with_lines(&format!("turning = \"follow\"\n{lines}\n")).unwrap_err();
+    let axes = "axes = [{ direction = [0, 0, 1], limits = [-90, 90], speed = 60 }]";
+    let unknown = refused("machine = \"kuka-dkp400\"");
+    assert!(
+        unknown.ends_with("there is no built-in positioner \"kuka-dkp400\". Did you mean \"kuka-dkp-400\"?"),
+        "{unknown}"
+    );
+    let line = Profile::built_in_text("cmt-al2319-kuka").unwrap().lines().count() + 2;
+    assert!(unknown.starts_with(&format!("line {line} of the profile: ")), "{unknown}");
+    assert!(refused("machine = \"x\"").contains("Known: kuka-dkp-400, "), "{}", refused("machine = \"x\""));
+    for both in [format!("machine = \"kuka-dkp-400\"\n{axes}"), "machine = \"trunnion-ac\"\nup = [0, 0, 1]".to_owned()]
+    {
+        assert!(refused(&both).contains("stands for \"axes\" and \"up\": remove it or them."), "{}", refused(&both));
+    }
+    assert!(refused("").contains("needs the key \"machine\" or \"axes\"."), "{}", refused(""));
+    assert!(with_lines(&format!("turning = \"follow\"\n{axes}\n")).is_ok());
 }
 
 /// `reach` follows the part as it turns, about the lines of the axes: the tool's tip is where the part has been turned to, and the wire

@@ -46,7 +46,8 @@ pub fn explain(message: &str) -> String {
     if message.starts_with("missing field") {
         return format!("the key \"{}\" is missing here.", quoted.next().unwrap_or(""));
     }
-    format!("{message}.")
+    let end = if message.ends_with(['.', '?']) { "" } else { "." };
+    format!("{message}{end}")
 }
 
 /// The most similar of the known words, if any is similar enough.

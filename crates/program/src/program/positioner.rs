@@ -4,6 +4,7 @@
 //! far from the other axis as "up" is, and that axis then brings both together (Paden 1986, subproblems 1 and 2). There are
 //! two ways, and whole turns of each axis; a pass begins where it can be followed to its end.
 
+use super::machine::Keys;
 use super::turning::{MOST_PER_MM, WOUND, whole_turns};
 use super::{Attitude, Instruction};
 use bead_plan::limit::{Broken, Limit, limit};
@@ -49,21 +50,15 @@ pub struct PositionerAxis {
 
 /// The section `[program.positioner]`: one or two axes that turn the part so that layers lie level under the torch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(try_from = "Keys")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Positioner {
     /// `"index"` turns it between passes, `"follow"` at every point.
     pub turning: Turning,
     /// From the floor to the part: one axis, or the one that tilts and the one that it carries.
     pub axes: Vec<PositionerAxis>,
-    /// What is up in the cell when all axes are at 0, in the part's x, y and z; default 0, 0, 1. Where a chuck holds the part by its
-    /// lower face with its axis level, it is a direction across the part.
-    #[serde(default = "upright")]
+    /// What is up in the cell when all axes are at 0, in the part's x, y and z.
     pub up: [f64; 3],
-}
-
-fn upright() -> [f64; 3] {
-    [0.0, 0.0, 1.0]
 }
 
 /// How a positioner holds the part.
@@ -253,6 +248,10 @@ pub(super) struct Holder {
     angles: [f64; 2],
     /// Where the torch is, mm.
     at: Option<DVec3>,
+    /// Speed of travels, mm/s.
+    travel_speed: f64,
+    /// How long travels have had to wait for the axes, s.
+    waited: f64,
 }
 
 /// A place of a pass.
@@ -275,8 +274,13 @@ impl Step {
 
 impl Holder {
     /// A positioner as in the profile, at 0; `None` without one.
-    pub(super) fn new(positioner: Option<&Positioner>) -> Option<Self> {
-        positioner.map(|own| Self { positioner: own.clone(), angles: [0.0; 2], at: None })
+    pub(super) fn new(positioner: Option<&Positioner>, travel_speed: f64) -> Option<Self> {
+        positioner.map(|own| Self { positioner: own.clone(), angles: [0.0; 2], at: None, travel_speed, waited: 0.0 })
+    }
+
+    /// How long travels have had to wait for the axes so far, s.
+    pub(super) fn waited(&self) -> f64 {
+        self.waited
     }
 
     /// Turns the part as the instructions of a layer need it.
@@ -300,6 +304,7 @@ impl Holder {
             Turning::Index => self.indexed(&steps),
             Turning::Follow => self.begun(&steps),
         };
+        self.waited += self.waits(&pass[..first], before, start);
         let way = self.positioner.farthest(before, start);
         // Wound back by a turn, the torch cannot go around with the part: the joints move.
         let before = if way > WOUND { start } else { before };
@@ -334,14 +339,25 @@ impl Holder {
         steps
     }
 
-    /// On the way to a pass the part turns as far as the torch has gone.
-    fn approach(&self, way: &mut [Instruction], from: [f64; 2], to: [f64; 2]) {
+    /// The lengths of the moves of a way, mm; 0 for what is no move.
+    fn lengths(&self, way: &[Instruction]) -> Vec<f64> {
         let mut at = self.at;
         let mut length = |instruction: &Instruction| {
             let target = instruction.target()?;
             Some(at.replace(target).map_or(0.0, |at| at.distance(target)))
         };
-        let lengths: Vec<f64> = way.iter().map(|instruction| length(instruction).unwrap_or(0.0)).collect();
+        way.iter().map(|instruction| length(instruction).unwrap_or(0.0)).collect()
+    }
+
+    /// How much longer the axes need for a way than the torch, s; nothing for the first, which may come from anywhere.
+    fn waits(&self, way: &[Instruction], from: [f64; 2], to: [f64; 2]) -> f64 {
+        let travel = self.lengths(way).iter().sum::<f64>() / self.travel_speed;
+        self.at.map_or(0.0, |_| (self.positioner.seconds(from, to) - travel).max(0.0))
+    }
+
+    /// On the way to a pass the part turns as far as the torch has gone.
+    fn approach(&self, way: &mut [Instruction], from: [f64; 2], to: [f64; 2]) {
+        let lengths = self.lengths(way);
         let all: f64 = lengths.iter().sum();
         let joints = way.iter().any(|i| matches!(i, Instruction::Approach { .. }));
         for k in 0..way.len() {
@@ -489,7 +505,7 @@ mod tests {
     }
 
     fn holder(positioner: &Positioner) -> Holder {
-        Holder { positioner: positioner.clone(), angles: [0.0; 2], at: None }
+        Holder::new(Some(positioner), 100.0).unwrap()
     }
 
     #[test]
