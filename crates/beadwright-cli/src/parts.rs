@@ -55,7 +55,7 @@ fn each(arguments: &Arguments) -> anyhow::Result<()> {
     }
     bar.finish_and_clear();
     let named = |one: &Planned<'_>| -> Vec<String> {
-        remedy::reasons(&one.summary, remedy::words(&one.profile))
+        remedy::reasons(&one.summary, remedy::words(one.profile))
             .iter()
             .map(|reason| format!("{}: {reason}", one.name))
             .collect()
@@ -116,7 +116,7 @@ impl Planned<'_> {
             &summary,
             &model.repair().sentences(),
             files.check(&Task::new())?,
-            remedy::words(&profile),
+            remedy::words(profile),
         );
         let built = files.built();
         let written = files.finish(&summary, &model.repair())?;

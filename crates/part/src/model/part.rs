@@ -242,6 +242,12 @@ impl Placement {
             Some(units) => units,
             None => units::guess(import.mesh.size() * self.scale, bead_width)?,
         };
+        if let (Some(given), Some(_)) = (self.units.filter(|units| units.in_mm() != 1.0), import.units) {
+            import.notes.push(format!(
+                "The file states its unit and was read in mm; the unit given beside it makes the part {} times as large.",
+                given.in_mm()
+            ));
+        }
         let mesh = &mut import.mesh;
         let placed = mesh.place(units.in_mm() * self.scale, self.turn);
         let (low, high) = mesh.bounds();
