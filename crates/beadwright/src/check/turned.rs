@@ -20,7 +20,11 @@ pub(super) struct Turned<'a> {
 
 /// All moves with the arc on; none where nothing turns the part.
 pub(super) fn moves<'a>(subject: &'a Subject<'_>) -> Vec<Turned<'a>> {
-    let (mut programmer, mut found) = (subject.profile.programmer(), Vec::new());
+    let (mut programmer, mut found) = (subject.whole.programmer(), Vec::new());
+    // The axes go on from where the bodies before have left them.
+    for layer in subject.earlier {
+        programmer.layer(layer);
+    }
     for layer in &subject.layers {
         let (mut at, mut pass, mut before) = (DVec3::ZERO, 0, None);
         let near = layer.passes.first().and_then(|pass| pass.start()).unwrap_or_default().truncate();

@@ -14,7 +14,7 @@ use beadwright::model::RepairReport;
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan;
 use beadwright::profile::{Body, Profile};
-use beadwright::program::{MACHINES, Machine, Positioner, PositionerAxis, Turning};
+use beadwright::program::{Instruction, MACHINES, Machine, Positioner, PositionerAxis, Turning};
 use beadwright::report::Report;
 use beadwright::task::Task;
 use common::{profile, with_all_dialects};
@@ -554,6 +554,30 @@ fn checks_judge_the_part_as_the_positioner_holds_it() {
     // Between passes only, a ring cannot be kept level.
     profile.program.positioner = Some(Positioner { turning: Turning::Index, ..chuck() });
     assert_eq!(found(&profile)[0].0, "off-level");
+}
+
+/// The program goes on with the axes where the body before has left them, and so do the checks.
+#[test]
+fn checks_see_the_turns_of_the_program() {
+    let (layers, mut profile) = planned("y-tube");
+    // The arms lean by 14° along x: this axis reaches one of them half, and the other not at all.
+    let axes = vec![axis([0.0, 1.0, 0.0], [-7.0, 0.0])];
+    profile.program.positioner = Some(Positioner { turning: Turning::Follow, axes, up: [0.0, 0.0, 1.0] });
+    profile.program.max_off_level = 1.0;
+    let (mut programmer, mut worst) = (profile.programmer(), BTreeMap::new());
+    for layer in layers.iter() {
+        for instruction in programmer.layer(layer).instructions {
+            let Instruction::Weld { attitude, .. } = instruction else { continue };
+            let up = attitude.held.unwrap().turn * attitude.layer * DVec3::Z;
+            let lean = worst.entry(layer.body).or_insert(0.0_f64);
+            *lean = lean.max(up.angle_between(DVec3::Z).to_degrees());
+        }
+    }
+    let expected: Vec<String> =
+        worst.values().filter(|lean| **lean > 1.0).map(|lean| format!("leans by {lean:.1}°")).collect();
+    let found = kinds(&layers, &profile);
+    assert!(expected.len() == 2 && found.len() == 2, "{expected:?}, {found:?}");
+    assert!(expected.iter().zip(&found).all(|(lean, (_, text))| text.contains(lean)), "{expected:?}, {found:?}");
 }
 
 #[test]
