@@ -23,6 +23,7 @@ mod common;
 mod control_flow;
 mod cost;
 mod curve;
+mod crashes;
 mod cut;
 mod definition;
 mod deposit;

@@ -7,10 +7,10 @@ use beadwright::plan;
 use beadwright::profile::Profile;
 use beadwright::robot::cell::BUILT_IN;
 use beadwright::robot::{
-    self, Body, Cell, CellError, Fixture, Frame, Home, Leg, PartPlace, Reach, Shape, Solid, Track, Trouble, Way,
+    self, Body, Cell, CellError, Frame, Home, Leg, PartPlace, Reach, Shape, Solid, Track, Trouble, Way,
 };
 use beadwright::task::Task;
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
 fn cell(name: &str) -> Cell {
@@ -244,7 +244,7 @@ fn the_wrist_at_home_matters_on_straight_moves_only() {
     assert!(walk(judged, Way::Line).findings.is_empty());
 }
 
-fn hits(reach: &Reach) -> Vec<([Solid; 2], f64)> {
+pub fn hits(reach: &Reach) -> Vec<([Solid; 2], f64)> {
     let hit = |trouble: Trouble| match trouble {
         Trouble::Collision { solids, depth } => Some((solids, depth)),
         _ => None,
@@ -278,111 +278,6 @@ fn what_the_arm_hits_is_reported() {
     assert!((depth(&thicker) - depth(&thick) - 10.0).abs() < 1e-9, "{} {}", depth(&thicker), depth(&thick));
     // The torch stands upright at x 1150 mm and more; the axis of the base ends at (160, 0, 520) mm.
     assert!((depth(&thick) - (1100.0 + 25.0 - 1000.0)).abs() < 60.0, "{}", depth(&thick));
-}
-
-/// A post is finished; what is welded at its foot afterwards brings the torch into it.
-#[test]
-fn the_part_as_far_as_it_is_welded_is_hit() {
-    let full = Cell { home: None, ..cell("kuka-kr20-r1810") };
-    let welded = |beside: f64, post_first: bool| {
-        let line = |x: f64, z: f64| {
-            let points = vec![DVec3::new(x, -20.0, z), DVec3::new(x, 20.0, z)];
-            Pass {
-                kind: PassKind::Infill,
-                closed: false,
-                points,
-                width: Along::Same(5.0),
-                pace: Along::Same(10.0),
-                wait: 0.0,
-            }
-        };
-        let (post, foot) = (line(0.0, 150.0), line(beside, 2.0));
-        let passes = if post_first { vec![post, foot] } else { vec![foot, post] };
-        let layer = Layer { index: 0, z: 150.0, height: 2.0, passes, ..Layer::default() };
-        let track = Profile::built_in("cmt-al2319-kuka").unwrap().track(&[layer]);
-        hits(&robot::reach(&full, full.part, &track))
-    };
-    let found = welded(20.0, true);
-    assert!(found.iter().any(|(solids, _)| *solids == [Solid::Torch, Solid::Part]), "{found:?}");
-    assert_eq!(welded(20.0, false), [], "the post is welded last");
-    assert_eq!(welded(400.0, true), [], "the post is far away");
-}
-
-/// A layer with straight passes between these ends, mm.
-fn straight(lines: &[[DVec3; 2]]) -> Layer {
-    let pass = |ends: &[DVec3; 2]| Pass {
-        kind: PassKind::Infill,
-        closed: false,
-        points: ends.to_vec(),
-        width: Along::Same(5.0),
-        pace: Along::Same(10.0),
-        wait: 0.0,
-    };
-    Layer { height: 2.0, passes: lines.iter().map(pass).collect(), ..Layer::default() }
-}
-
-/// What torch and hand hit of the part and of what holds it.
-fn crashes(layers: &[Layer], cell: &Cell) -> Vec<[Solid; 2]> {
-    let track = Profile::built_in("cmt-al2319-kuka").unwrap().track(layers);
-    let found = hits(&robot::reach(cell, cell.part, &track)).into_iter().map(|(solids, _)| solids);
-    found.filter(|[_, what]| [Solid::Part, Solid::Fixture].contains(what)).collect()
-}
-
-/// A wall that stands, of straight passes in layers of 2 mm.
-fn wall(from: DVec3, to: DVec3, height: f64) -> Vec<Layer> {
-    let layers = (height / 2.0) as usize;
-    (1..=layers).map(|k| straight(&[[from, to].map(|at| at.with_z(2.0 * k as f64))])).collect()
-}
-
-/// Twenty parts whose torch crashes, and the same ones that leave room for it: a bead too near to a wall, a way through a wall that is
-/// higher than the clearance, layers in the wrong order, a clamp.
-#[test]
-fn crashes_are_found_and_clean_builds_have_none() {
-    let cell = Cell { home: None, ..cell("kuka-kr20-r1810") };
-    let torch = cell.body.as_ref().unwrap().torch;
-    for seed in 0..5 {
-        let angle = 0.4 + 1.1 * f64::from(seed);
-        let (way, aside) = (DVec2::from_angle(angle).extend(0.0), DVec2::from_angle(angle).perp().extend(0.0));
-        let high = 60.0 + 10.0 * f64::from(seed);
-        let stands = || wall(way * -40.0, way * 40.0, high);
-        let (touching, clear) = (torch - 6.0, torch + 8.0);
-        let beside = |by: f64| [stands(), wall(way * -40.0 + aside * by, way * 40.0 + aside * by, 6.0)].concat();
-        let low = |by: f64| {
-            // Across the wall, or past its end; the clearance is 20 mm.
-            let [one, other] = [-70.0, 70.0].map(|across| way * by + aside * across + DVec3::Z * 2.0);
-            [stands(), vec![straight(&[[one, one - aside * 20.0], [other, other + aside * 20.0]])]].concat()
-        };
-        let mut upside_down = stands();
-        upside_down.reverse();
-        let clamped = |by: f64| {
-            let mut cell = cell.clone();
-            let middle = way * 40.0 + aside * (by + 10.0);
-            let (low, high) = (middle - DVec3::splat(10.0), (middle + DVec3::splat(10.0)).with_z(high));
-            let fixtures = &mut cell.body.as_mut().unwrap().fixtures;
-            // The box lies along x and y: its nearest place to the wall's end is a corner or a face.
-            fixtures.push(Fixture { low: low.to_array(), high: high.to_array() });
-            cell
-        };
-        for (what, found) in [
-            ("a bead beside a wall", crashes(&beside(touching), &cell)),
-            ("a way through a wall", crashes(&low(0.0), &cell)),
-            ("layers in the wrong order", crashes(&upside_down, &cell)),
-            ("a clamp", crashes(&stands(), &clamped(0.0))),
-        ] {
-            assert!(found.iter().any(|[by, _]| *by == Solid::Torch), "{what}, {seed}: {found:?}");
-        }
-        for (what, found) in [
-            ("a bead beside a wall", crashes(&beside(clear), &cell)),
-            ("a way past a wall", crashes(&low(40.0 + clear), &cell)),
-            ("layers in their order", crashes(&stands(), &cell)),
-            ("a clamp", crashes(&stands(), &clamped(clear + 10.0))),
-        ] {
-            assert_eq!(found, Vec::<[Solid; 2]>::new(), "{what}, {seed}");
-        }
-    }
-    let (_, text) = BUILT_IN.iter().find(|(name, _)| *name == "kuka-kr20-r1810").unwrap();
-    let refused = Cell::parse(&format!("{text}\nfixtures = [{{ low = [0, 0, 0], high = [1, -1, 1] }}]\n"));
-    assert!(refused.unwrap_err().to_string().contains("body.fixtures"));
 }
 
 #[test]
