@@ -244,7 +244,7 @@ fn the_wrist_at_home_matters_on_straight_moves_only() {
     assert!(walk(judged, Way::Line).findings.is_empty());
 }
 
-pub fn hits(reach: &Reach) -> Vec<([Solid; 2], f64)> {
+pub(crate) fn hits(reach: &Reach) -> Vec<([Solid; 2], f64)> {
     let hit = |trouble: Trouble| match trouble {
         Trouble::Collision { solids, depth } => Some((solids, depth)),
         _ => None,
