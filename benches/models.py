@@ -23,8 +23,6 @@ FLAGS = {
     "facade_infill_open.stl": ["--surface", "wall"], "y_surface_open.obj": ["--surface", "wall"],
     "connection3legs_open_low_res.stl": ["--surface", "wall"],
 }
-# Findings that say a pass is laid over air.
-AIR = {"hanging-pass", "hanging-island", "no-metal-below"}
 
 
 def planned(binary, model, angle, out):
@@ -38,7 +36,7 @@ def planned(binary, model, angle, out):
         return {"status": "over 30 min"}
     row = {"seconds": time.monotonic() - began}
     if done.returncode:
-        said = [line for line in done.stderr.splitlines() if line.strip()]
+        said = [line for line in done.stderr.splitlines() if line.strip()] or [f"ended with status {done.returncode}"]
         reason = next((line for line in said[1:] if not line.startswith("note")), said[0]) if "no program was" in done.stderr else said[0]
         return row | {"status": f"refused ({done.returncode})", "why": reason.removeprefix("error: ")[:150]}
     metrics, plan = (json.loads((out / name).read_text()) for name in ("metrics.json", "plan.json"))
@@ -68,7 +66,7 @@ def main():
     arguments.add_argument("--output", type=pathlib.Path, default=pathlib.Path("/tmp/beadwright-models"))
     arguments.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/beadwright")
     given = arguments.parse_args()
-    models = sorted(m for m in pathlib.Path(given.models).iterdir() if m.suffix not in {".md"})
+    models = sorted(m for m in pathlib.Path(given.models).iterdir() if m.is_file() and m.suffix != ".md")
     models = [m for m in models if not given.names or m.name in given.names]
     rows = []
     columns = ["layers", "islands", "starts", "refilled", "covered", "void", "overfill", "within", "serious", "findings", "seconds", "why"]

@@ -111,12 +111,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 /// Of so many shells, solids are listed.
 const MOST_SOLIDS: usize = 50;
 
-/// Each solid of several, with a point by which a body can name it.
+/// Each solid of several, with a point on it, in the coordinates of the file.
 fn list_solids(out: &mut impl Write, mesh: &Mesh) -> anyhow::Result<()> {
     let solids = Solids::of(mesh);
     for number in (0..solids.count()).filter(|_| solids.count() > 1) {
         let volume = solids.mesh(&[number]).volume();
-        let at = solids.point(number).map_or_else(String::new, |p| format!(", at {:.2}/{:.2}/{:.2}", p.x, p.y, p.z));
+        let at = solids
+            .point(number)
+            .map_or_else(String::new, |p| format!(", at {:.4}/{:.4}/{:.4} in the file", p.x, p.y, p.z));
         writeln!(out, "  solid      {volume:.3}{at}")?;
     }
     Ok(())

@@ -332,7 +332,7 @@ impl Programmer {
         LayerProgram { index: layer.index, z: layer.z, instructions }
     }
 
-    /// How much longer the travels between passes have taken so far because the part had to be turned, s.
+    /// How long travels have waited for the axes of a positioner so far, s.
     pub fn waited(&self) -> f64 {
         self.positioner.as_ref().map_or(0.0, Holder::waited)
     }

@@ -4,7 +4,7 @@ use super::{Check, Finding, Subject};
 use crate::layer::{Layer, overhang};
 use crate::plan::charted::Across;
 use glam::{DVec2, DVec3};
-use planar::{Polygon, buffer};
+use planar::{Polygon, Region, buffer};
 
 pub(super) const CHECK: Check = Check {
     name: "overhang",
@@ -29,9 +29,9 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         None => below.islands.clone(),
     };
     let hanging = |layer: &&Layer| {
-        let mut below: Vec<Polygon> = subject.below(layer).iter().flat_map(|below| islands(below, layer)).collect();
+        let below: Vec<Polygon> = subject.below(layer).iter().flat_map(|below| islands(below, layer)).collect();
         overhang(&below, &layer.islands, reach, width)?;
-        below.extend(of_other_bodies(subject, layer));
+        let below = Region::from_normalised(below).union(&of_other_bodies(subject, layer)).into_polygons();
         let (area, place) = overhang(&below, &layer.islands, reach, width)?;
         let text = format!("{area:.1} mm² overhang the layer below by more than {reach:.1} mm.");
         Some(CHECK.of_layer(layer, Some(place.extend(layer.z)), text))
@@ -40,9 +40,10 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
 }
 
 /// Metal of bodies welded before under a layer, as that is unrolled.
-fn of_other_bodies(subject: &Subject<'_>, layer: &Layer) -> Vec<Polygon> {
-    let Some(outline) = layer.islands.first().filter(|_| !subject.earlier.is_empty()) else { return Vec::new() };
-    let (sheet, near) = (subject.profile.layers.chart.sheet(layer.middle()), outline.outer.points()[0]);
+fn of_other_bodies(subject: &Subject<'_>, layer: &Layer) -> Region {
+    let corner = layer.islands.first().and_then(|island| island.outer.points().first().copied());
+    let Some(near) = corner.filter(|_| !subject.earlier.is_empty()) else { return Region::default() };
+    let sheet = subject.profile.layers.chart.sheet(layer.middle());
     let underside = layer.z - layer.height;
     let under = |p: DVec3| {
         let at = sheet.coordinates(p, near);
@@ -70,5 +71,5 @@ fn of_other_bodies(subject: &Subject<'_>, layer: &Layer) -> Vec<Polygon> {
             .collect::<Vec<Vec<DVec2>>>()
     });
     let all: Vec<Vec<DVec2>> = lines.iter().cloned().chain(around.collect::<Vec<_>>()).collect();
-    buffer(&all, false, width / 2.0, ACCURACY * width).polygons().to_vec()
+    buffer(&all, false, width / 2.0, ACCURACY * width)
 }

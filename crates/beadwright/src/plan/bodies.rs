@@ -96,7 +96,7 @@ fn missing(mesh: &Mesh, bodies: Option<f64>) -> Option<String> {
             "belong to two bodies and would be welded twice"
         };
         format!(
-            "{:.1} of {:.1} cm³ of the part {what} (layers.bodies: chart and within).",
+            "{:.1} of {:.1} cm³ of the part {what} (layers.bodies: chart, within and solids).",
             missing.abs() / 1e3,
             whole / 1e3
         )
@@ -134,10 +134,11 @@ struct Ready<'a> {
 impl<'a> Ready<'a> {
     fn of<E>(own: &'a Own<'a>, task: &Task) -> Result<Self, PlanError<E>> {
         if let Some(name) = own.body.unknown_solid() {
-            return Err(own.wrong(format!("no object of the model is named \"{name}\".")));
+            let why = "or its solids cannot be told apart: write a point on each instead, x/y/z in mm";
+            return Err(own.wrong(format!("no object of the model is named \"{name}\", {why}.")));
         }
         if own.mesh.triangles.is_empty() {
-            return Err(own.wrong("nothing of the part lies above all planes of its within."));
+            return Err(own.wrong("nothing of the part belongs to it: look at its chart, within and solids."));
         }
         let unrolled = Unrolled::of(own.part(), &own.profile, task).map_err(|error| own.named(error))?;
         let mut ready = Self { own, unrolled, warmth: Warmth::default(), slabs: Vec::new() };

@@ -78,7 +78,7 @@ fn begin_where_it_does(mesh: &Mesh, profile: &mut Profile) {
         (chart.is_level() && low.is_finite() && low > ON_TABLE).then_some(Chart::Plane(plane))
     };
     let layers = &mut profile.layers;
-    for body in &mut layers.bodies {
+    for body in layers.bodies.iter_mut().filter(|body| body.chart.is_level()) {
         body.chart = raised(&body.chart, &body.of_mesh(mesh)).unwrap_or_else(|| body.chart.clone());
     }
     if layers.bodies.is_empty() {

@@ -20,7 +20,7 @@ use crate::profile::Profile;
 use crate::slice::{Half, Slice};
 use crate::warning::{Warning, WarningKind, Warnings};
 use glam::DVec2;
-use planar::Polygon;
+use planar::{Polygon, Region};
 use std::borrow::Cow;
 
 /// Puts filled layers in order and hands them over.
@@ -162,7 +162,8 @@ impl<S: Sink> Emitter<'_, S> {
         let stands =
             |pass: &Pass| pass.start().is_some_and(|p| there.iter().any(|island| island.contains(p.truncate())));
         if !there.is_empty() {
-            below.to_mut().extend(there.iter().cloned());
+            let [own, there] = [below.to_vec(), there.clone()].map(Region::from_normalised);
+            below = own.union(&there).into_polygons().into();
         }
         let mut doubts = Vec::new();
         let mut doubt = |kind, place, size| doubts.push(Warning { kind, layer: index, place, size });

@@ -79,8 +79,11 @@ pub fn raster_angle(layers: &[ToFill], strategy: &dyn Strategy, profile: &Profil
     let settings = profile.fill_settings(0);
     let infills: Vec<Vec<Region>> =
         layers.iter().map(|layer| fill::angle::infills(strategy, layer.islands, &settings)).collect();
+    let mut still = profile.clone();
+    // Angles are compared by their own time, not by how a positioner happens to be turned.
+    still.program.positioner = None;
     let laid = |angle: f64| {
-        let (mut metrics, mut torch) = (Metrics::new(profile), None);
+        let (mut metrics, mut torch) = (Metrics::new(&still), None);
         for (i, (layer, infills)) in layers.iter().zip(&infills).enumerate() {
             let raster_angle = angle + FRAC_PI_2 * i as f64;
             let settings = FillSettings { raster_angle, solid: layer.solid, ..profile.fill_settings(i) };

@@ -17,8 +17,8 @@ const LEAST: f64 = 0.5;
 const BRIDGE: f64 = 2.0;
 /// A place is clear of a bead this far beyond its edge, in bead widths: less than a quarter of what is welded there lies on it.
 const CLEAR: f64 = 0.25;
-/// A new island in the air is left out up to this area, in squared bead widths, and up to this part of its layer where that
-/// has others.
+/// A new island in the air is left out up to this area, in squared bead widths, and up to this part of its layer, unless the layer
+/// below has no passes.
 const SMALL: f64 = 4.0;
 const SMALL_PART: f64 = 0.5;
 /// A pass in the air is left out up to this length, in bead widths.

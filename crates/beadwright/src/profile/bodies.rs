@@ -23,8 +23,8 @@ pub struct Body {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub within: Vec<Plane>,
-    /// Of a model with several solids, those that it is: each by a point on it (`x/y/z`, mm, as the part stands) or, in a file of
-    /// bodies, by the name of the object in the model. All of them if left out.
+    /// The solids that make up this body, where a model has several: each by a point on it (`x/y/z`, mm, as the part stands), or by the
+    /// name of its object in the model. All of them if left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub solids: Vec<Solid>,
@@ -202,7 +202,7 @@ impl Body {
         self.within.iter().chain(first).fold(whole, |rest, plane| plane.above(&rest))
     }
 
-    /// Whether a place of the part belongs to it.
+    /// Whether a place of the part belongs to it, as far as its chart and planes say; its solids are not looked at.
     pub fn has(&self, p: DVec3) -> bool {
         self.chart.coordinates(p).z >= 0.0 && self.within.iter().all(|plane| plane.coordinates(p).z >= 0.0)
     }

@@ -74,7 +74,7 @@ impl Turns {
             Turning::Follow => "at every point",
         };
         format!(
-            "<section class=\"card\"><h2>Positioner</h2>\n<p>The part is turned {when}. Travels wait for it for {:.0} s in all.</p>\n\
+            "<section class=\"card\"><h2>Positioner</h2>\n<p>The part is turned {when}. Travels wait {:.0} s in all until it has turned.</p>\n\
              <div class=\"plots\" role=\"group\" tabindex=\"0\" \
              aria-label=\"Angles of the positioner over the passes\">{pictures}</div>\n</section>",
             self.programmer.waited()

@@ -244,7 +244,7 @@ impl Placement {
         };
         if let (Some(given), Some(_)) = (self.units.filter(|units| units.in_mm() != 1.0), import.units) {
             import.notes.push(format!(
-                "The file states its unit and was read in mm; the unit given beside it makes the part {} times as large.",
+                "The file states its own unit; the one given is applied on top of it, so the part is {} times as large: leave it out.",
                 given.in_mm()
             ));
         }
@@ -395,7 +395,12 @@ impl Part {
         let repair = RepairReport { triangles, vertices, open_edges, shells, ..import.repair };
         let mut milled = import.milled;
         milled.iter_mut().for_each(|milled| milled.shift(DVec3::NEG_Z * z));
-        Ok(Self::Mesh(Import { mesh, repair, milled, ..import }))
+        let mut objects = import.objects;
+        for object in &mut objects {
+            object.at.iter_mut().for_each(|point| point.z -= z);
+            object.at.retain(|point| point.z >= 0.0);
+        }
+        Ok(Self::Mesh(Import { mesh, repair, milled, objects, ..import }))
     }
 
     /// The solid; none for curves.

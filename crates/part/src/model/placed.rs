@@ -11,6 +11,9 @@ use std::collections::BTreeMap;
 /// Assemblies are nested no deeper than this.
 const DEEPEST: usize = 32;
 
+/// Of so many shells, objects are told apart; more are the pieces of a broken mesh.
+const MOST_SHELLS: usize = 100;
+
 /// A file of an archive and a number in it.
 pub(super) type Id = (String, u32);
 
@@ -76,10 +79,13 @@ impl Resources {
         let count = facets.len();
         let place = |i| format!("triangle {}", i + 1);
         let import = formats::of_facets(facets.iter().copied(), count, self.format, place, task)?;
-        let solids = Solids::of(&import.mesh);
-        for (object, range) in objects.iter_mut().zip(ranges) {
-            let corners = facets[range].iter().map(|(_, corners)| corners.map(|corner| Vec3::from(corner).as_dvec3()));
-            object.at = solids.between(corners).into_iter().filter_map(|number| solids.point(number)).collect();
+        if import.repair.shells <= MOST_SHELLS {
+            let solids = Solids::of(&import.mesh);
+            let corners = |(_, corners): &Facet| corners.map(|corner| Vec3::from(corner).as_dvec3());
+            let groups = solids.of_groups(ranges.into_iter().map(|range| facets[range].iter().map(corners)));
+            for (object, group) in objects.iter_mut().zip(groups) {
+                object.at = group.into_iter().filter_map(|number| solids.point(number)).collect();
+            }
         }
         Ok(Import { units: Some(Units::Millimetre), objects, ..import })
     }

@@ -3,8 +3,10 @@
 use super::triangle::Triangle;
 use super::{Mesh, NO_NEIGHBOUR};
 use glam::DVec3;
+use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
+use std::f64::consts::TAU;
 
 /// A mesh divided into its solids, which are numbered in the order of their first triangles.
 ///
@@ -43,7 +45,8 @@ impl<'a> Solids<'a> {
         let solid: Vec<usize> = shell.into_iter().map(&mut numbered).collect();
         let face = |(t, &solid): (usize, &usize)| Face { triangle: Triangle::of(mesh, t), solid };
         let faces = solid.iter().enumerate().map(face).filter(|face| face.triangle.normal().length_squared() > 0.0);
-        let tree = RTree::bulk_load(faces.collect());
+        // Of one, there is nothing to find.
+        let tree = RTree::bulk_load(if number.len() > 1 { faces.collect() } else { Vec::new() });
         Self { mesh, count: number.len(), solid, tree }
     }
 
@@ -54,7 +57,8 @@ impl<'a> Solids<'a> {
 
     /// The one whose surface lies nearest to a point.
     pub fn nearest(&self, point: DVec3) -> Option<usize> {
-        self.tree.nearest_neighbor(&point.to_array()).map(|face| face.solid)
+        let single = Some(0).filter(|_| self.count == 1);
+        single.or_else(|| self.tree.nearest_neighbor(&point.to_array()).map(|face| face.solid))
     }
 
     /// Those of the given numbers as a mesh.
@@ -78,6 +82,9 @@ impl<'a> Solids<'a> {
 
     /// A point on the surface of one that lies on no other, where there is one, so that [`Self::nearest`] finds it again.
     pub fn point(&self, number: usize) -> Option<DVec3> {
+        if self.count == 1 {
+            return self.mesh.triangles.first().map(|_| Triangle::of(self.mesh, 0).middle());
+        }
         let own = || (0..self.solid.len()).filter(|t| self.solid[*t] == number);
         let middles = own().map(|t| Triangle::of(self.mesh, t).middle()).step_by(own().count() / TRIED + 1);
         let beside = (self.mesh.size().length() * BESIDE).powi(2);
@@ -85,8 +92,11 @@ impl<'a> Solids<'a> {
         middles.clone().find(alone).or_else(|| middles.clone().next())
     }
 
-    /// The solids to which triangles between these points belong.
-    pub(super) fn between(&self, corners: impl Iterator<Item = [DVec3; 3]>) -> Vec<usize> {
+    /// For each group of triangles, given by their corners, the solids to which they belong.
+    pub(super) fn of_groups(&self, groups: impl Iterator<Item = impl Iterator<Item = [DVec3; 3]>>) -> Vec<Vec<usize>> {
+        if self.count == 1 {
+            return groups.map(|_| vec![0]).collect();
+        }
         let key = |v: DVec3| v.to_array().map(f64::to_bits);
         let mut around: HashMap<[u64; 3], Vec<usize>> = HashMap::new();
         for (triangle, solid) in self.mesh.triangles.iter().zip(&self.solid) {
@@ -98,17 +108,13 @@ impl<'a> Solids<'a> {
             }
         }
         let none = Vec::new();
-        let mut found: Vec<usize> = corners
-            .filter_map(|corners| {
-                let [a, b, c] = corners.map(|corner| around.get(&key(corner)).unwrap_or(&none));
-                let mut common = a.iter().filter(|solid| b.contains(solid) && c.contains(solid));
-                // Where solids touch, their faces have the same corners.
-                common.next().filter(|_| common.next().is_none()).copied()
-            })
-            .collect();
-        found.sort_unstable();
-        found.dedup();
-        found
+        let of = |corners: [DVec3; 3]| {
+            let [a, b, c] = corners.map(|corner| around.get(&key(corner)).unwrap_or(&none));
+            let mut common = a.iter().filter(|solid| b.contains(solid) && c.contains(solid));
+            // Where solids touch, their faces have the same corners.
+            common.next().filter(|_| common.next().is_none()).copied()
+        };
+        groups.map(|group| group.filter_map(of).collect::<BTreeSet<_>>().into_iter().collect()).collect()
     }
 }
 
@@ -141,22 +147,34 @@ fn shells(mesh: &Mesh) -> (Vec<usize>, usize) {
 
 /// For each shell the one to whose solid it belongs: a cavity to the smallest shell around it, others to themselves.
 fn owners(mesh: &Mesh, shell: &[usize], count: usize) -> Vec<usize> {
-    let mut volume = vec![0.0; count];
+    let (mut volume, mut corners) = (vec![0.0; count], vec![0; count]);
     let mut bounds = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
     for (triangle, &shell) in mesh.triangles.iter().zip(shell) {
         let [a, b, c] = triangle.map(|i| mesh.vertices[i as usize]);
         volume[shell] += a.dot(b.cross(c)) / 6.0;
+        corners[shell] = triangle[0];
         for corner in [a, b, c] {
             bounds[shell] = (bounds[shell].0.min(corner), bounds[shell].1.max(corner));
         }
     }
-    let holds = |outer: usize, inner: usize| {
-        bounds[outer].0.cmple(bounds[inner].0).all() && bounds[outer].1.cmpge(bounds[inner].1).all()
+    let boxes = (0..count).filter(|shell| volume[*shell] > 0.0).map(|shell| {
+        let (low, high) = bounds[shell];
+        GeomWithData::new(Rectangle::from_corners(low.to_array(), high.to_array()), shell)
+    });
+    let boxes = RTree::bulk_load(boxes.collect());
+    // Cavities are few, and few boxes hold them.
+    let is_inside = |p: DVec3, outer: usize| {
+        let own = shell.iter().enumerate().filter(|(_, shell)| **shell == outer);
+        own.map(|(t, _)| Triangle::of(mesh, t).solid_angle(p)).sum::<f64>() > TAU
     };
     let owner = |own: usize| {
-        let around =
-            (0..count).filter(|other| volume[own] < 0.0 && volume[*other] > -volume[own] && holds(*other, own));
-        around.min_by(|a, b| volume[*a].total_cmp(&volume[*b])).unwrap_or(own)
+        if volume[own] >= 0.0 {
+            return own;
+        }
+        let corner = mesh.vertices[corners[own] as usize];
+        let around = boxes.locate_all_at_point(&corner.to_array()).map(|around| around.data);
+        let around = around.filter(|other| volume[*other] > -volume[own] && is_inside(corner, *other));
+        around.min_by(|a, b| volume[*a].total_cmp(&volume[*b]).then(a.cmp(b))).unwrap_or(own)
     };
     (0..count).map(owner).collect()
 }

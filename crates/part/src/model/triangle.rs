@@ -34,6 +34,13 @@ impl Triangle {
         (b - a).cross(c - a)
     }
 
+    /// The solid angle that it takes up seen from a point, sr; above 0 where its back is seen (Van Oosterom and Strackee 1983).
+    pub(crate) fn solid_angle(&self, from: DVec3) -> f64 {
+        let [a, b, c] = self.corners.map(|corner| corner - from);
+        let [x, y, z] = [a, b, c].map(DVec3::length);
+        2.0 * a.dot(b.cross(c)).atan2(x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
+    }
+
     /// The place of the triangle that is nearest to a point.
     pub(crate) fn closest(&self, point: DVec3) -> DVec3 {
         let (normal, edges) = (self.normal(), self.edges());

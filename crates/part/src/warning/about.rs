@@ -65,7 +65,7 @@ impl WarningKind {
             Self::ThinFeature => (
                 "thin-feature",
                 "a place is thinner than wall.thinnest, or a short neck, or the strategy is raster, which welds no thin walls",
-                "use a narrower bead or a thicker part",
+                "use a narrower bead or a thicker part; where the strategy is raster, another one welds thin walls",
             ),
             Self::IslandTooSmall => (
                 "island-too-small",

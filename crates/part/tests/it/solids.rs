@@ -1,7 +1,9 @@
 //! Meshes divided into their solids.
 
+use bead_part::model::solid::Solid;
 use bead_part::model::{Mesh, Solids};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use planar::{Polygon, Ring};
 
 /// A box by its lowest and highest corner; a cavity where it is wound inwards.
 fn block(low: f64, high: f64, inwards: bool) -> Mesh {
@@ -14,6 +16,22 @@ fn block(low: f64, high: f64, inwards: bool) -> Mesh {
         mesh.neighbours.iter_mut().for_each(|across| across.swap(0, 2));
     }
     mesh
+}
+
+/// A box with a cavity, between the walls of a thin bracket of less metal.
+#[test]
+fn a_cavity_does_not_belong_to_what_stands_around_its_solid() {
+    let outline =
+        [(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (97.0, 100.0), (97.0, 3.0), (3.0, 3.0), (3.0, 100.0), (0.0, 100.0)];
+    let outline = Polygon::simple(Ring::new(outline.map(DVec2::from).to_vec()));
+    let Solid { vertices, triangles } = Solid::loft(&outline, &[0.0, 100.0], |p, _| p);
+    let bracket = Mesh::from_triangles(vertices, triangles).0;
+    assert!((64e3..512e3).contains(&bracket.volume()), "{}", bracket.volume());
+    let mut mesh = block(10.0, 90.0, false);
+    mesh.add(block(30.0, 70.0, true));
+    mesh.add(bracket);
+    let hollow = Solids::of(&mesh).mesh(&[0]).volume();
+    assert!((hollow - (512e3 - 64e3)).abs() < 1e-6, "{hollow}");
 }
 
 #[test]
