@@ -108,13 +108,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Of so many shells, solids are listed.
+/// Solids are listed up to this number of shells; a broken mesh has more.
 const MOST_SOLIDS: usize = 50;
 
 /// Each solid of several, with a point on it, in the coordinates of the file.
 fn list_solids(out: &mut impl Write, mesh: &Mesh) -> anyhow::Result<()> {
     let solids = Solids::of(mesh);
-    for number in (0..solids.count()).filter(|_| solids.count() > 1) {
+    if solids.count() == 1 {
+        return Ok(());
+    }
+    for number in 0..solids.count() {
         let volume = solids.mesh(&[number]).volume();
         let at = solids
             .point(number)

@@ -29,6 +29,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         None => below.islands.clone(),
     };
     let hanging = |layer: &&Layer| {
+        // Other bodies are looked at only where the layer reaches beyond its own.
         let below: Vec<Polygon> = subject.below(layer).iter().flat_map(|below| islands(below, layer)).collect();
         overhang(&below, &layer.islands, reach, width)?;
         let below = Region::from_normalised(below).union(&of_other_bodies(subject, layer)).into_polygons();
@@ -64,12 +65,11 @@ fn of_other_bodies(subject: &Subject<'_>, layer: &Layer) -> Region {
     }
     // Where a line crosses the seam, its ends lie far apart.
     lines.retain(|line| !line.is_empty() && line.windows(2).all(|ends| ends[0].distance(ends[1]) < 2.0 * width));
-    let around = [-1.0, 1.0].into_iter().flat_map(|turns| {
-        lines
-            .iter()
-            .filter_map(|line| line.iter().map(|p| sheet.turned(*p, turns)).collect())
-            .collect::<Vec<Vec<DVec2>>>()
-    });
-    let all: Vec<Vec<DVec2>> = lines.iter().cloned().chain(around.collect::<Vec<_>>()).collect();
-    buffer(&all, false, width / 2.0, ACCURACY * width)
+    let turned = |turns: f64| {
+        let line = move |line: &Vec<DVec2>| line.iter().map(|p| sheet.turned(*p, turns)).collect::<Option<Vec<_>>>();
+        lines.iter().filter_map(line)
+    };
+    let around: Vec<Vec<DVec2>> = [-1.0, 1.0].into_iter().flat_map(turned).collect();
+    lines.extend(around);
+    buffer(&lines, false, width / 2.0, ACCURACY * width)
 }

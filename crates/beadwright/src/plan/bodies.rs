@@ -134,7 +134,7 @@ struct Ready<'a> {
 impl<'a> Ready<'a> {
     fn of<E>(own: &'a Own<'a>, task: &Task) -> Result<Self, PlanError<E>> {
         if let Some(name) = own.body.unknown_solid() {
-            let why = "or its solids cannot be told apart: write a point on each instead, x/y/z in mm";
+            let why = "or its solids were not found: write a point on each instead, x/y/z in mm";
             return Err(own.wrong(format!("no object of the model is named \"{name}\", {why}.")));
         }
         if own.mesh.triangles.is_empty() {

@@ -1,10 +1,9 @@
 //! What torch and hand hit while a part grows: the part itself, clamps, and nothing where there is room.
 
 use crate::common;
-use crate::robot::hits;
+use crate::robot::{hits, pass};
 
 use beadwright::layer::Layer;
-use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::profile::Profile;
 use beadwright::program::{Positioner, PositionerAxis, Turning};
 use beadwright::robot::cell::BUILT_IN;
@@ -17,17 +16,7 @@ use glam::{DVec2, DVec3};
 fn the_part_as_far_as_it_is_welded_is_hit() {
     let full = Cell { home: None, ..Cell::built_in("kuka-kr20-r1810").unwrap() };
     let welded = |beside: f64, post_first: bool| {
-        let line = |x: f64, z: f64| {
-            let points = vec![DVec3::new(x, -20.0, z), DVec3::new(x, 20.0, z)];
-            Pass {
-                kind: PassKind::Infill,
-                closed: false,
-                points,
-                width: Along::Same(5.0),
-                pace: Along::Same(10.0),
-                wait: 0.0,
-            }
-        };
+        let line = |x: f64, z: f64| pass(vec![DVec3::new(x, -20.0, z), DVec3::new(x, 20.0, z)]);
         let (post, foot) = (line(0.0, 150.0), line(beside, 2.0));
         let passes = if post_first { vec![post, foot] } else { vec![foot, post] };
         let layer = Layer { index: 0, z: 150.0, height: 2.0, passes, ..Layer::default() };
@@ -42,15 +31,8 @@ fn the_part_as_far_as_it_is_welded_is_hit() {
 
 /// A layer with straight passes between these ends, mm.
 fn straight(lines: &[[DVec3; 2]]) -> Layer {
-    let pass = |ends: &[DVec3; 2]| Pass {
-        kind: PassKind::Infill,
-        closed: false,
-        points: ends.to_vec(),
-        width: Along::Same(5.0),
-        pace: Along::Same(10.0),
-        wait: 0.0,
-    };
-    Layer { height: 2.0, passes: lines.iter().map(pass).collect(), ..Layer::default() }
+    let passes = lines.iter().map(|ends| pass(ends.to_vec())).collect();
+    Layer { height: 2.0, passes, ..Layer::default() }
 }
 
 /// What torch and hand hit of the part and of what holds it.

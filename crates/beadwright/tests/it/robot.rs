@@ -34,17 +34,15 @@ fn place(x: f64, y: f64, z: f64, rotation: f64) -> PartPlace {
     PartPlace { position: [x, y, z], rotation }
 }
 
-/// One layer with one open pass through these points, 10 mm/s.
+/// An open pass through these points, 10 mm/s.
+pub(crate) fn pass(points: Vec<DVec3>) -> Pass {
+    let (width, pace) = (Along::Same(5.0), Along::Same(10.0));
+    Pass { kind: PassKind::Infill, closed: false, points, width, pace, wait: 0.0 }
+}
+
+/// One layer with one open pass through these points.
 fn track(points: &[[f64; 3]]) -> Track {
-    let points: Vec<DVec3> = points.iter().map(|&p| p.into()).collect();
-    let pass = Pass {
-        kind: PassKind::Infill,
-        closed: false,
-        points,
-        width: Along::Same(5.0),
-        pace: Along::Same(10.0),
-        wait: 0.0,
-    };
+    let pass = pass(points.iter().map(|&p| p.into()).collect());
     let layer = Layer { index: 0, z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() };
     // Travels 20 mm above at 100 mm/s.
     Profile::built_in("cmt-al2319-kuka").unwrap().track(&[layer])

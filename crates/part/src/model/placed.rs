@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Assemblies are nested no deeper than this.
 const DEEPEST: usize = 32;
 
-/// Of so many shells, objects are told apart; more are the pieces of a broken mesh.
+/// Objects are matched with their solids up to this number of shells; a broken mesh has more.
 const MOST_SHELLS: usize = 100;
 
 /// A file of an archive and a number in it.

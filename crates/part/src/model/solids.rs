@@ -118,7 +118,7 @@ impl<'a> Solids<'a> {
     }
 }
 
-/// So many places are tried for a point of a solid.
+/// Number of places that are tried for a point of a solid.
 const TRIED: usize = 200;
 /// A place lies on another solid if it is as near to it as this part of the mesh's size.
 const BESIDE: f64 = 1e-4;
