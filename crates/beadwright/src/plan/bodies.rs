@@ -5,8 +5,8 @@ use super::beside::{Beside, Watch};
 use super::charted::{self, Unrolled};
 use super::row::{NUMBERED_APART, Row};
 use super::support::{Footing, Under};
-use super::warm::Warmth;
-use super::{Header, PlanError, Sink, Summary, plan_at, slabs_of, warm};
+use super::warm::{Heat, Warmth};
+use super::{Header, PlanError, Sink, Start, Summary, plan_at, slabs_of, warm};
 use crate::chart::{Chart, warp};
 use crate::layer::Extent;
 use crate::model::{Mesh, PartRef};
@@ -58,6 +58,11 @@ pub(super) fn bodies_into<S: Sink + Send>(
     if let Some(base) = onto {
         beside.finish(BASE, base);
     }
+    let placed = ready.iter().filter_map(|ready| match ready.part() {
+        PartRef::Mesh { mesh, .. } => Some((&ready.own.profile.layers.chart, mesh)),
+        PartRef::Curves(..) => None,
+    });
+    let mut heat = (owned.len() > 1 || !profile.layers.are_level()).then(|| Heat::of_bodies(profile, placed));
     for (k, (own, ready)) in owned.iter().zip(&ready).enumerate() {
         row.body = k;
         let under = owned[..k].iter().map(|other| &other.mesh).chain(onto);
@@ -68,7 +73,9 @@ pub(super) fn bodies_into<S: Sink + Send>(
             ready.footing(under, task)?
         };
         let mut watch = Watch::new(&mut row, &mut beside, own.body, &own.profile);
-        let summary = ready.plan(footing, task, &mut watch)?;
+        let start =
+            Start { warmth: &ready.warmth, footing, heat: heat.as_mut().map(|heat| heat.before(k, &ready.warmth)) };
+        let summary = ready.plan(start, task, &mut watch)?;
         row.finish(&own.body.name, ready.slabs.len(), &summary);
         beside.finish(&own.body.name, &own.mesh);
     }
@@ -191,14 +198,9 @@ impl<'a> Ready<'a> {
         Ok(())
     }
 
-    fn plan<S: Sink + Send>(
-        &self,
-        footing: Footing,
-        task: &Task,
-        sink: &mut S,
-    ) -> Result<Summary, PlanError<S::Error>> {
+    fn plan<S: Sink + Send>(&self, start: Start, task: &Task, sink: &mut S) -> Result<Summary, PlanError<S::Error>> {
         let (own, part) = (self.own, self.part());
-        let planned = plan_at(&self.warmth, &own.body.name, part, footing, &own.profile, task, sink);
+        let planned = plan_at(start, &own.body.name, part, &own.profile, task, sink);
         let mut summary = planned.map_err(|error| own.named(error))?;
         summary.forbidden.extend(charted::too_narrow(part.bounds().1.z, &own.profile));
         if let PartRef::Mesh { mesh, .. } = part {

@@ -28,7 +28,7 @@ pub(super) struct Emitter<'a, S> {
     pub(super) profile: &'a Profile,
     pub(super) sink: &'a mut S,
     pub(super) torch: Option<DVec2>,
-    pub(super) heat: Heat,
+    pub(super) heat: &'a mut Heat,
     pub(super) memory: order::Memory,
     pub(super) helix: Option<Helix>,
     /// The first layer of which the helix could make no turn.
@@ -116,6 +116,7 @@ impl<S: Sink> Emitter<'_, S> {
     /// Keeps the limits of `[interpass]`, warns where that is impossible, and widens beads by the heat that they find.
     fn warm(&mut self, layer: &mut Layer) {
         let Some(build) = &mut self.heat.build else { return };
+        layer.body = self.heat.body;
         let heat = build.layer_within_limits(layer);
         layer.warnings.extend(heat.cuts.iter().map(|&place| Warning {
             kind: WarningKind::Paused,

@@ -146,7 +146,9 @@ pub fn plan_into<'a, S: Sink + Send>(
     let unrolled = Unrolled::of(given, profile, task)?;
     let part = unrolled.as_ref().map_or(given, Unrolled::part);
     let warmth = warm::predicted(part, profile, task)?;
-    let mut summary = plan_at(&warmth, name, part, Footing::PLATE, profile, task, sink)?;
+    let mut heat = heat_in_space(part, profile);
+    let start = Start { heat: heat.as_mut().map(|heat| heat.before(0, &warmth)), ..Start::on_plate(&warmth) };
+    let mut summary = plan_at(start, name, part, profile, task, sink)?;
     if let (Some(_), PartRef::Mesh { mesh: placed, .. }, PartRef::Mesh { mesh, .. }) = (&unrolled, given, part) {
         summary.notes.extend(charted::notes(placed, mesh, profile));
         summary.forbidden.extend(charted::too_narrow(mesh.bounds().1.z, profile));
@@ -154,12 +156,33 @@ pub fn plan_into<'a, S: Sink + Send>(
     Ok(summary)
 }
 
-/// Plans a part whose layers follow a known warmth.
+/// The heat of a part whose layers are not level, given in the coordinates of its chart.
+fn heat_in_space(part: PartRef, profile: &Profile) -> Option<Heat> {
+    let chart = &profile.layers.chart;
+    let PartRef::Mesh { mesh, .. } = part else { return None };
+    (!chart.is_level()).then(|| Heat::of_bodies(profile, std::iter::once((chart, mesh))))
+}
+
+/// What a part or a body of it begins on.
+struct Start<'a> {
+    /// How its layers rise.
+    warmth: &'a Warmth,
+    footing: Footing,
+    /// The heat of those before; `None` on a cold plate.
+    heat: Option<&'a mut Heat>,
+}
+
+impl<'a> Start<'a> {
+    fn on_plate(warmth: &'a Warmth) -> Self {
+        Self { warmth, footing: Footing::PLATE, heat: None }
+    }
+}
+
+/// Plans a part from its start on.
 fn plan_at<S: Sink + Send>(
-    warmth: &Warmth,
+    start: Start,
     name: &str,
     part: PartRef,
-    footing: Footing,
     profile: &Profile,
     task: &Task,
     sink: &mut S,
@@ -167,9 +190,9 @@ fn plan_at<S: Sink + Send>(
     match part {
         PartRef::Mesh { mesh, milled, .. } => {
             let strategy = profile.fill.strategy.strategy();
-            plan_mesh((warmth, footing), name, (mesh, milled), strategy, profile, task, sink)
+            plan_mesh(start, name, (mesh, milled), strategy, profile, task, sink)
         }
-        PartRef::Curves(curves, height) => plan_curves(warmth, name, curves, height, profile, task, sink),
+        PartRef::Curves(curves, height) => plan_curves(start.warmth, name, curves, height, profile, task, sink),
     }
 }
 
@@ -187,11 +210,13 @@ pub fn plan_with<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let mesh = &*charted::unrolled(mesh, profile, task)?;
     let warmth = warm::predicted(mesh.into(), profile, task)?;
-    plan_mesh((&warmth, Footing::PLATE), name, (mesh, None), strategy, profile, task, sink)
+    let mut heat = heat_in_space(mesh.into(), profile);
+    let start = Start { heat: heat.as_mut().map(|heat| heat.before(0, &warmth)), ..Start::on_plate(&warmth) };
+    plan_mesh(start, name, (mesh, None), strategy, profile, task, sink)
 }
 
 fn plan_mesh<S: Sink + Send>(
-    (warmth, footing): (&Warmth, Footing),
+    Start { warmth, footing, heat }: Start,
     name: &str,
     (mesh, milled): (&Mesh, Option<&Mesh>),
     strategy: &dyn Strategy,
@@ -210,7 +235,11 @@ fn plan_mesh<S: Sink + Send>(
     let slabs = slabs_at(warmth, mesh, profile, task)?;
     let left = left_over(mesh, &slabs, profile);
     let (low, high) = mesh.bounds();
-    let heat = Heat::of(profile, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs, warmth);
+    let mut own = Heat::default();
+    let heat = heat.unwrap_or_else(|| {
+        own = Heat::of(profile, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs, warmth);
+        &mut own
+    });
     let milled_volume = milled.map(Mesh::volume);
     let milled = milled.map(|part| Milled::new(part, &slabs, profile, task)).transpose()?;
     let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?
@@ -313,7 +342,7 @@ fn plan_curves<S: Sink + Send>(
     let bounds = curves.bounds(height).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let (low, high) = (bounds.min.extend(0.0), bounds.max.extend(height));
     let extent = Extent { layers: slabs.len(), low, high };
-    let heat = Heat::of(profile, &bounds, &slabs, warmth);
+    let mut heat = Heat::of(profile, &bounds, &slabs, warmth);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let layers = batch * BATCH..((batch + 1) * BATCH).min(slabs.len());
         let fill = |index: usize| {
@@ -322,8 +351,15 @@ fn plan_curves<S: Sink + Send>(
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let mut summary =
-        run([name, profile.fill.strategy.name()], extent, (heat, Footing::PLATE), profile, task, sink, fill_batch)?;
+    let mut summary = run(
+        [name, profile.fill.strategy.name()],
+        extent,
+        (&mut heat, Footing::PLATE),
+        profile,
+        task,
+        sink,
+        fill_batch,
+    )?;
     summary.notes.extend(centre_lines::other_thickness(given, profile));
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(
@@ -339,7 +375,7 @@ fn plan_curves<S: Sink + Send>(
 fn run<S: Sink + Send>(
     [part, strategy]: [&str; 2],
     extent: Extent,
-    (heat, footing): (Heat, Footing),
+    (heat, footing): (&mut Heat, Footing),
     profile: &Profile,
     task: &Task,
     sink: &mut S,

@@ -2,9 +2,8 @@
 
 use super::clearance::{Clearance, Close, Watch};
 use super::row::{NUMBERED_APART, Row};
-use super::support::Footing;
 use super::warm::Warmth;
-use super::{Header, PlanError, Sink, Summary, plan_at, slabs_of, warm};
+use super::{Header, PlanError, Sink, Start, Summary, plan_at, slabs_of, warm};
 use crate::layer::Extent;
 use crate::model::PartRef;
 use crate::process::TorchShape;
@@ -49,7 +48,7 @@ pub fn parts_into<S: Sink + Send>(
     for (((name, part), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
         clearance.begin(name);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
-        let own = plan_at(warmth, name, *part, Footing::PLATE, profile, task, &mut watch)?;
+        let own = plan_at(Start::on_plate(warmth), name, *part, profile, task, &mut watch)?;
         row.finish(name, *count, &own);
     }
     let mut summary = row.summary("The parts are welded one after another");

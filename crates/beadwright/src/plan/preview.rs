@@ -45,7 +45,7 @@ pub fn preview(
         profile,
         sink: &mut last,
         torch: None,
-        heat: Heat::default(),
+        heat: &mut Heat::default(),
         memory: Memory::default(),
         // A single layer is not a turn.
         helix: None,

@@ -1,15 +1,16 @@
 //! What heat does to beads: on warm metal they spread, and the layers of a wall rise less.
 
-use super::support::Footing;
-use super::{Collect, PlanError, plan_at};
+use super::{Collect, PlanError, Start, plan_at};
 use crate::bead::BeadByHeat;
-use crate::heat::{Build, LayerHeat, PassHeat};
+use crate::chart::Chart;
+use crate::heat::{Build, HeatSettings, LayerHeat, PassHeat, Site};
 use crate::layer::Layer;
-use crate::model::PartRef;
+use crate::model::{Mesh, PartRef};
 use crate::pass::{Along, Pass, Segment};
 use crate::profile::Profile;
 use crate::slice::Slab;
 use crate::task::Task;
+use glam::DVec3;
 use planar::Bounds;
 
 /// How often a wall is planned until its layers lie where its own heat lets them rise; each time brings them closer by a
@@ -38,6 +39,8 @@ impl Warmth {
 /// The part as it warms up while its layers are planned.
 #[derive(Debug, Default)]
 pub(super) struct Heat {
+    /// The body whose layers come.
+    pub(super) body: usize,
     /// Its metal; `None` where the profile neither limits its temperature nor says what it does.
     pub(super) build: Option<Build>,
     warmth: Warmth,
@@ -46,11 +49,30 @@ pub(super) struct Heat {
 impl Heat {
     /// The plate before the first layer.
     pub(super) fn of(profile: &Profile, bounds: &Bounds, slabs: &[Slab], warmth: &Warmth) -> Self {
-        let matters = profile.interpass.is_some() || profile.bead.by_heat.is_some();
-        let settings = profile.heat_settings().ok().filter(|_| matters);
         let layers: Vec<(f64, f64)> = slabs.iter().map(|slab| (slab.z, slab.height)).collect();
-        let build = settings.map(|settings| Build::new(&settings, &profile.weld_settings(), bounds, &layers));
-        Self { build, warmth: warmth.clone() }
+        let build = settings(profile).map(|settings| Build::new(&settings, &profile.weld_settings(), bounds, &layers));
+        Self { body: 0, build, warmth: warmth.clone() }
+    }
+
+    /// What bodies begin on whose layers lie in space, each given by its chart and its mesh there.
+    pub(super) fn of_bodies<'a>(profile: &Profile, bodies: impl Iterator<Item = (&'a Chart, &'a Mesh)>) -> Self {
+        let build = settings(profile).map(|settings| {
+            let site = |(chart, mesh): (&Chart, &Mesh)| {
+                // Around an axis the mesh holds what lies below the first layer, too.
+                let least = if chart.goes_around() { profile.layers.height / 2.0 } else { f64::NEG_INFINITY };
+                let welded: Vec<DVec3> = mesh.vertices.iter().copied().filter(|p| p.z > least).collect();
+                Site::of(chart, &welded, 0.0)
+            };
+            let sites: Vec<Option<Site>> = bodies.map(site).collect();
+            Build::in_space(&settings, &profile.weld_settings(), &sites)
+        });
+        Self { build, ..Self::default() }
+    }
+
+    /// The same, before the layers of a body.
+    pub(super) fn before(&mut self, body: usize, warmth: &Warmth) -> &mut Self {
+        (self.body, self.warmth) = (body, warmth.clone());
+        self
     }
 
     /// How thick a layer on metal at a height (mm) is, as a multiple of what it is at the temperature of the profile.
@@ -58,6 +80,12 @@ impl Heat {
         // The first bead of a wall is a cap on the cold plate.
         if index == 0 { 1.0 } else { self.warmth.lift(below) }
     }
+}
+
+/// What the heat model knows, where the profile limits temperatures or says what they do.
+fn settings(profile: &Profile) -> Option<HeatSettings> {
+    let matters = profile.interpass.is_some() || profile.bead.by_heat.is_some();
+    profile.heat_settings().ok().filter(|_| matters)
 }
 
 /// The warmth of a wall, if its profile says what heat does to its layers, and they follow its height.
@@ -71,7 +99,7 @@ pub(super) fn predicted<E>(part: PartRef, profile: &Profile, task: &Task) -> Res
     let Some(wall) = wall else { return Ok(warmth) };
     for _ in 0..ROUNDS {
         let mut planned = Collect::default();
-        match plan_at(&warmth, "", part, Footing::PLATE, profile, task, &mut planned) {
+        match plan_at(Start::on_plate(&warmth), "", part, profile, task, &mut planned) {
             Ok(_) => {}
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled.into()),
             // The plan itself reports what is wrong.

@@ -42,6 +42,7 @@ mod fdm;
 mod formats;
 mod heat_body;
 mod heat_build;
+mod heat_space;
 mod heat_walls;
 mod helix;
 mod holes;

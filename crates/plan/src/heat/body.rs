@@ -63,7 +63,7 @@ pub struct Body {
     pub(super) across: [Vec<f64>; 3],
     /// Bare area across each axis, mm².
     pub(super) bare: [Vec<f64>; 3],
-    /// Area of the lowest level that lies on the table, mm².
+    /// Area that lies on the table, mm²: of the lowest level, or of every voxel where any may ([`Self::hold`]).
     pub(super) table: Vec<f64>,
     /// True area of the sides of a level over that of its voxels' sides.
     pub(super) sides: Vec<f64>,
@@ -113,14 +113,26 @@ impl Body {
 
     /// The lowest `levels` full of metal at a temperature, °C.
     pub fn fill(&mut self, levels: usize, temperature: f64) {
-        let plane = self.grid.strides()[2];
-        for voxel in 0..plane * levels {
+        let full = |voxel: usize| {
             let size = self.grid.size(voxel);
-            self.add(voxel, size.x * size.y * size.z, size.x * size.y);
-            self.theta[voxel] = temperature - self.air.ambient;
+            (voxel, size.x * size.y * size.z, size.x * size.y)
+        };
+        let full: Vec<(usize, f64, f64)> = (0..self.grid.strides()[2] * levels).map(full).collect();
+        self.place(&full, temperature);
+    }
+
+    /// Metal at a temperature (°C): voxels, with the volume (mm³) that comes to each and the area (mm²) that all of its metal then
+    /// covers seen from above.
+    pub(super) fn place(&mut self, metal: &[(usize, f64, f64)], temperature: f64) {
+        let theta = temperature - self.air.ambient;
+        for &(voxel, volume, area) in metal {
+            let before = self.capacity[voxel];
+            self.add(voxel, volume, area);
+            let (now, new) = (self.capacity[voxel], self.capacity[voxel] - before);
+            self.theta[voxel] += theta * (new / now.max(f64::MIN_POSITIVE));
+            self.supplied += theta * new;
         }
-        self.supplied += self.energy();
-        self.refresh(&(0..plane * levels).collect::<Vec<_>>());
+        self.refresh(&metal.iter().map(|(voxel, ..)| *voxel).collect::<Vec<_>>());
     }
 
     /// Adds metal (mm³) at the temperature of the surroundings; `area` (mm²) is all that the voxel's metal then covers seen
@@ -186,6 +198,14 @@ impl Body {
         }
     }
 
+    /// The table takes heat through these areas of voxels (mm²) instead of the lowest level.
+    pub(super) fn hold(&mut self, areas: &[(usize, f64)]) {
+        if self.table.len() < self.grid.len() {
+            self.table = vec![0.0; self.grid.len()];
+        }
+        areas.iter().for_each(|&(voxel, area)| self.table[voxel] = area);
+    }
+
     /// Cross-section of a voxel's metal across an axis, mm².
     fn section(&self, voxel: usize, axis: usize) -> f64 {
         if axis == 2 { self.area[voxel] } else { self.metal[voxel] / self.grid.size(voxel)[axis] }
@@ -216,7 +236,7 @@ impl Body {
                 // The lowest voxels lie on the table.
                 if axis == 2 { own } else { 0.0 }
             };
-            if axis == 2 && place[2] == 0 {
+            if axis == 2 && place[2] == 0 && self.table.len() < self.grid.len() {
                 self.table[voxel] = own;
             }
             let bare = (own - before).max(0.0) + (own - after).max(0.0);

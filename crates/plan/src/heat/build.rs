@@ -1,14 +1,16 @@
 //! A part being built: metal is laid as the torch goes, heated by the arc, and cools meanwhile.
 
 use super::body::{Air, Body, Stuff};
+use super::frame::{Frame, On, Site};
 use super::grid::{Grid, graded};
-use super::settings::{HeatSettings, Interpass};
+use super::settings::{HeatSettings, Interpass, Substrate};
 use crate::layer::Layer;
 use crate::pass::Pass;
 use crate::process::Process;
 use crate::weld::{Torch, WeldSettings, path};
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon};
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// Metal is laid in pieces of this length, in voxels.
@@ -32,6 +34,9 @@ const PATIENCE: f64 = 2.0;
 
 /// Metal is laid at places this far apart along and across a bead, in voxels.
 const FINE: f64 = 0.25;
+
+/// True area of sides over that of their voxels, where they lie in all directions: a circle's perimeter over that of its square.
+const SLANTED: f64 = std::f64::consts::FRAC_PI_4;
 
 /// Lengths are equal to within this, mm.
 const ROUNDING: f64 = 1e-6;
@@ -114,8 +119,9 @@ pub struct Build {
     process: Process,
     pub(super) torch: Torch,
     pub(super) body: Body,
-    /// Level of voxels of every layer.
-    levels: Vec<usize>,
+    frame: Frame,
+    /// Where bodies begin that have not begun yet; none where all layers are level.
+    sites: Vec<Option<Site>>,
     /// Side area of the layers in every level, mm².
     sides: Vec<f64>,
     /// Area of each voxel that the current layer covers, mm², and which voxels those are.
@@ -136,7 +142,65 @@ impl Build {
             settings.heat.voxel = Some(1.1 * settings.voxel());
             (grid, levels, plate_levels) = voxels(&settings, bounds, layers);
         }
-        let plate = &settings.substrate;
+        let mut build = Self::of(settings, weld, grid, Frame::Level(levels), plate_levels);
+        build.body.fill(plate_levels, build.settings.preheat());
+        build
+    }
+
+    /// What bodies whose layers lie in space begin on, before the first of them. Where a body begins on a plate or on metal that is
+    /// not welded, this is `substrate.thickness` thick and reaches beyond the body by `substrate.margin`.
+    pub fn in_space(settings: &HeatSettings, weld: &WeldSettings, sites: &[Option<Site>]) -> Self {
+        let mut settings = settings.clone();
+        let Substrate { thickness, margin, .. } = settings.substrate;
+        let [welded, all] = Site::boxes(sites.iter().flatten(), thickness, margin);
+        let beyond = settings.bead_width / 2.0;
+        let edges = |axis: usize, voxel: f64| {
+            // On multiples of the voxel: as warm afterwards, when the extent is a little different.
+            let [low, high] = [welded[0][axis] - beyond, welded[1][axis] + beyond].map(|at| at / voxel);
+            let within = [low.floor() * voxel, high.ceil() * voxel];
+            graded(within, [within[0] - all[0][axis], all[1][axis] - within[1]], voxel)
+        };
+        let grid = |voxel: f64| Grid::new([edges(0, voxel), edges(1, voxel), edges(2, voxel)]);
+        while grid(settings.voxel()).len() > MOST_VOXELS {
+            settings.heat.voxel = Some(1.1 * settings.voxel());
+        }
+        let grid = grid(settings.voxel());
+        let below = grid.edges(2).iter().filter(|edge| **edge <= welded[0].z).count().saturating_sub(1);
+        let mut build = Self::of(settings, weld, grid, Frame::Space(weld.charts.clone()), below);
+        build.body.sides.fill(SLANTED);
+        build.sites = sites.to_vec();
+        // Bodies that begin on the same surface stand beside one another.
+        let first = sites.iter().flatten().next();
+        let beside =
+            |site: &&mut Option<Site>| site.as_ref().is_some_and(|site| first.is_some_and(|f| f.chart == site.chart));
+        let begun: Vec<Site> = build.sites.iter_mut().filter(beside).filter_map(Option::take).collect();
+        begun.iter().for_each(|site| build.ground(site));
+        build
+    }
+
+    /// Lays what a body begins on.
+    fn ground(&mut self, site: &Site) {
+        let Substrate { thickness, margin, .. } = self.settings.substrate;
+        let grid = self.body.grid();
+        let lacking = |voxel: usize| {
+            let size = grid.size(voxel);
+            let part = site.part(grid, voxel, [-thickness, 0.0], margin);
+            let lacking = part * size.x * size.y * size.z - self.body.metal(voxel);
+            (lacking > 0.0).then_some((voxel, lacking, part * size.x * size.y))
+        };
+        let laid: Vec<(usize, f64, f64)> = (0..grid.len()).into_par_iter().filter_map(lacking).collect();
+        // The far side lies on the table; the heat that this takes is that of all metal near it.
+        let near = thickness.min(self.settings.voxel());
+        let far = |&(voxel, ..): &(usize, f64, f64)| {
+            let (part, size) = (site.part(grid, voxel, [-thickness, near - thickness], margin), grid.size(voxel));
+            (part > 0.0).then_some((voxel, part * size.x * size.y * size.z / near))
+        };
+        let far: Vec<(usize, f64)> = laid.par_iter().filter_map(far).collect();
+        self.body.place(&laid, self.settings.preheat());
+        self.body.hold(&far);
+    }
+
+    fn of(settings: HeatSettings, weld: &WeldSettings, grid: Grid, frame: Frame, plate_levels: usize) -> Self {
         let ([part, substrate], [k_part, k_plate]) = (settings.capacities(), settings.conductivities());
         let stuff = |k: usize| match k < plate_levels {
             true => Stuff { capacity: substrate, conductivity: k_plate },
@@ -144,19 +208,18 @@ impl Build {
         };
         let stuff = (0..grid.counts()[2]).map(stuff).collect();
         let heat = &settings.heat;
-        let [convection, contact] = [heat.convection, plate.contact].map(|film| film * 1e-6);
+        let [convection, contact] = [heat.convection, settings.substrate.contact].map(|film| film * 1e-6);
         let air = Air { ambient: heat.ambient, convection, emissivity: heat.emissivity, contact };
-        let mut body = Body::new(grid, stuff, air);
-        body.fill(plate_levels, plate.preheat.unwrap_or(heat.ambient));
         let mut build = Self {
             nominal: weld.process.clone(),
             process: weld.process.at_layer(0),
             torch: Torch::of(weld),
-            sides: vec![0.0; body.grid().counts()[2]],
-            covered: vec![0.0; body.grid().len()],
+            sides: vec![0.0; grid.counts()[2]],
+            covered: vec![0.0; grid.len()],
             touched: Vec::new(),
-            body,
-            levels,
+            body: Body::new(grid, stuff, air),
+            frame,
+            sites: Vec::new(),
             settings,
             now: 0.0,
             pending: 0.0,
@@ -200,7 +263,8 @@ impl Build {
     /// Builds a layer with the waits that its passes have.
     pub fn layer(&mut self, layer: &Layer) -> LayerHeat {
         let mut heat = self.begin(layer);
-        heat.passes = layer.passes.iter().filter_map(|pass| self.pass(layer.index, pass)).collect();
+        let on = self.on(layer);
+        heat.passes = layer.passes.iter().filter_map(|pass| self.pass(on, pass)).collect();
         self.end(layer);
         LayerHeat { end: self.now, ..heat }
     }
@@ -212,15 +276,42 @@ impl Build {
         self.spend(begun.moving() + begun.waiting());
         self.catch_up(None);
         self.body.settle();
+        if let Some(site) = self.sites.get_mut(layer.body).and_then(Option::take) {
+            self.begin_body(&site, layer);
+        }
+        LayerHeat { passes: Vec::new(), below: self.below(layer), end: self.now, cuts: Vec::new() }
+    }
+
+    /// Lays what a body begins on, unless that is metal of those before.
+    fn begin_body(&mut self, site: &Site, layer: &Layer) {
+        let on = self.frame.on(layer);
+        let places = || layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate());
+        let stands = places().filter(|at| self.frame.uppermost(&self.body, on, *at, self.voxel()).is_some()).count();
+        if 2 * stands < places().count() {
+            self.ground(site);
+        }
+    }
+
+    /// Mean temperature of what lies below a layer, °C.
+    fn below(&self, layer: &Layer) -> f64 {
+        let Frame::Level(levels) = &self.frame else {
+            let on = self.frame.on(layer);
+            let places = layer.passes.iter().flat_map(|pass| &pass.points);
+            let (sum, count) =
+                places.fold((0.0, 0), |(sum, count), p| (sum + self.surface(on, p.truncate()), count + 1));
+            return if count > 0 { sum / f64::from(count) } else { self.settings.heat.ambient };
+        };
+        let level = |layer: usize| levels.get(layer).or(levels.last()).copied().unwrap_or_default();
         // The layer before may lie in the same level of voxels; an empty one left nothing.
-        let under = layer.index.checked_sub(1).map_or(self.level(0).saturating_sub(1), |before| self.level(before));
+        let under = layer.index.checked_sub(1).map_or(level(0).saturating_sub(1), level);
         let below = (0..=under).rev().find(|level| self.body.level_metal(*level) > 0.0).unwrap_or_default();
-        LayerHeat { passes: Vec::new(), below: self.body.level_temperature(below), end: self.now, cuts: Vec::new() }
+        self.body.level_temperature(below)
     }
 
     /// Ends a layer: now its sides are known.
     pub(super) fn end(&mut self, layer: &Layer) {
-        let level = self.level(layer.index);
+        let Frame::Level(_) = self.frame else { return };
+        let level = self.on(layer).level;
         let welded = |island: &&Polygon| {
             let starts = layer.passes.iter().filter_map(Pass::start);
             starts.into_iter().any(|start| island.contains(start.truncate()))
@@ -242,9 +333,9 @@ impl Build {
     }
 
     /// Advances the body by the time that has passed; by all of it where a temperature is to be read, at a place of a layer.
-    pub(super) fn catch_up(&mut self, at: Option<(usize, DVec2)>) {
+    pub(super) fn catch_up(&mut self, at: Option<(On, DVec2)>) {
         let (mut step, whole) = (FIRST_STEP * self.crossing(), self.pending);
-        let place = at.map(|(layer, at)| self.body.grid().column(at.x, at.y, self.level(layer)));
+        let place = at.map(|(on, at)| self.frame.voxel(self.body.grid(), on, at));
         while self.pending > 0.0 {
             let next = if self.pending < 1.5 * step { self.pending } else { step };
             if let Some(place) = place {
@@ -267,21 +358,17 @@ impl Build {
         self.settings.voxel().powi(2) * capacity / conductivity
     }
 
-    fn level(&self, layer: usize) -> usize {
-        self.levels.get(layer).or(self.levels.last()).copied().unwrap_or_default()
+    /// Where a layer lies in the grid.
+    pub(super) fn on(&self, layer: &Layer) -> On {
+        self.frame.on(layer)
     }
 
     /// Temperature of the metal under a place of a layer, °C: the mean of the uppermost voxels within a bead's width. What
     /// lies more than a level deeper, such as the plate next to a wall, does not count.
-    pub(super) fn surface(&self, layer: usize, at: DVec2) -> f64 {
-        let (level, reach) = (self.level(layer), 0.35 * self.settings.bead_width);
-        let (grid, body) = (self.body.grid(), &self.body);
-        let plane = grid.strides()[2];
-        let uppermost = |offset: DVec2| {
-            let place = at + reach * offset;
-            let top = grid.column(place.x, place.y, level);
-            (0..=level).map(|down| (level - down, top - down * plane)).find(|(_, voxel)| body.metal(*voxel) > 0.0)
-        };
+    pub(super) fn surface(&self, on: On, at: DVec2) -> f64 {
+        let reach = 0.35 * self.settings.bead_width;
+        let body = &self.body;
+        let uppermost = |offset: DVec2| self.frame.uppermost(body, on, at + reach * offset, self.voxel());
         let around = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y].map(uppermost);
         let highest = around.iter().flatten().map(|(level, _)| *level).max().unwrap_or_default();
         let near = around.iter().flatten().filter(|(level, _)| level + 1 >= highest);
@@ -291,30 +378,30 @@ impl Build {
         if weight > 0.0 { heat / weight } else { self.settings.heat.ambient }
     }
 
-    /// Builds a pass of the layer with the index `layer`, after the wait that it has; `None` if it has no points.
-    pub(super) fn pass(&mut self, layer: usize, pass: &Pass) -> Option<PassHeat> {
+    /// Builds a pass of a layer, after the wait that it has; `None` if it has no points.
+    pub(super) fn pass(&mut self, on: On, pass: &Pass) -> Option<PassHeat> {
         let start = pass.start()?;
         let pause = self.torch.wait(pass.wait);
         self.spend(pause.map_or(0.0, |pause| pause.moving + pause.seconds));
         let approach = self.torch.approach(start);
         self.spend(approach.moving);
-        self.catch_up(Some((layer, start.truncate())));
+        self.catch_up(Some((on, start.truncate())));
         let moves = path(pass, self.torch.ends());
-        let temperature = self.surface(layer, start.truncate());
+        let temperature = self.surface(on, start.truncate());
         let welded = self.torch.weld(pass.kind, &moves);
         self.spend(welded.before);
         let at = self.now;
         let wait = pause.map_or(0.0, |pause| pause.seconds);
         let mut heat = PassHeat { at, wait, start: temperature, along: vec![temperature] };
-        heat.along.extend(self.weld(layer, &moves, pass, welded.moving));
-        self.crater(layer, &moves, pass.width.max(), welded.crater);
+        heat.along.extend(self.weld(on, &moves, pass, welded.moving));
+        self.crater(on, &moves, pass.width.max(), welded.crater);
         let up = self.torch.retract().moving;
         self.spend(welded.after + up);
         Some(heat)
     }
 
     /// Lays a path of points and paces chunk by chunk, within `moving` seconds; temperatures ahead of the torch, °C.
-    fn weld(&mut self, layer: usize, moves: &[(DVec3, f64)], pass: &Pass, moving: f64) -> Vec<f64> {
+    fn weld(&mut self, on: On, moves: &[(DVec3, f64)], pass: &Pass, moving: f64) -> Vec<f64> {
         let pieces = || moves.windows(2).map(|w| (w[0].0.truncate(), w[1].0.truncate(), w[1].1));
         let steady: f64 = pieces().map(|(a, b, pace)| a.distance(b) / self.process.speed_at(pace)).sum();
         let (slower, spacing) = (moving / steady.max(1e-9), self.spacing());
@@ -338,16 +425,16 @@ impl Build {
                 chunk.joules += self.settings.power_at(&self.process, pace) * seconds;
                 chunk.seconds += seconds;
                 chunk.length += part;
-                self.cover([from, to], width, area * part, layer, &mut chunk);
+                self.cover([from, to], width, area * part, on, &mut chunk);
                 done += part;
                 left -= part;
                 if chunk.length >= length * (1.0 - 1e-9) {
-                    along.push(self.finish(layer, &mut chunk, to));
+                    along.push(self.finish(on, &mut chunk, to));
                 }
             }
         }
         if let Some((end, _)) = moves.last() {
-            self.finish(layer, &mut chunk, end.truncate());
+            self.finish(on, &mut chunk, end.truncate());
         }
         // At its end nothing is ahead.
         along.truncate(((total - ROUNDING) / spacing).max(0.0) as usize);
@@ -355,7 +442,7 @@ impl Build {
     }
 
     /// The arc burns on at the end of a pass.
-    fn crater(&mut self, layer: usize, moves: &[(DVec3, f64)], width: f64, seconds: f64) {
+    fn crater(&mut self, on: On, moves: &[(DVec3, f64)], width: f64, seconds: f64) {
         let (Some((end, pace)), true) = (moves.last(), seconds > 0.0) else { return };
         let feed = self.torch.crater_feed();
         let volume = self.settings.bead_area * self.nominal.deposition_speed * seconds * feed;
@@ -365,32 +452,31 @@ impl Build {
         let before = moves.iter().rev().nth(1).map_or(end, |(before, _)| before.truncate());
         // On the last half of a bead's width.
         let back = (before - end).normalize_or(DVec2::X) * width / 2.0;
-        self.cover([end + back, end], width, volume, layer, &mut chunk);
-        self.finish(layer, &mut chunk, end);
+        self.cover([end + back, end], width, volume, on, &mut chunk);
+        self.finish(on, &mut chunk, end);
     }
 
     /// Spreads metal (mm³) along a piece of a bead over the voxels that it covers.
-    fn cover(&mut self, [from, to]: [DVec2; 2], width: f64, volume: f64, layer: usize, chunk: &mut Chunk) {
-        let (level, length, apart) = (self.level(layer), from.distance(to), FINE * self.settings.voxel());
+    fn cover(&mut self, [from, to]: [DVec2; 2], width: f64, volume: f64, on: On, chunk: &mut Chunk) {
+        let (length, apart) = (from.distance(to), FINE * self.settings.voxel());
         let [along, across] = [length, width].map(|extent| (extent / apart).ceil().max(1.0) as usize);
         let side = (to - from).normalize_or_zero().perp() * width;
-        let part = 1.0 / (along * across) as f64;
+        let deep = self.frame.deep(on, apart);
+        let part = 1.0 / (along * across * deep) as f64;
         for s in 0..along {
             let middle = from.lerp(to, (s as f64 + 0.5) / along as f64);
-            for t in 0..across {
-                let at = middle + ((t as f64 + 0.5) / across as f64 - 0.5) * side;
-                chunk.metal.push((self.body.grid().column(at.x, at.y, level), volume * part, width * length * part));
-            }
+            let add = |voxel| chunk.metal.push((voxel, volume * part, width * length * part));
+            self.frame.across(self.body.grid(), on, middle, side, [across, deep], add);
         }
     }
 
     /// Lays and heats what a chunk holds, and lets its time pass; returns the temperature just ahead of its end, °C.
-    fn finish(&mut self, layer: usize, chunk: &mut Chunk, end: DVec2) -> f64 {
+    fn finish(&mut self, on: On, chunk: &mut Chunk, end: DVec2) -> f64 {
         let Chunk { mut metal, joules, seconds, .. } = std::mem::take(chunk);
         if metal.is_empty() {
-            return self.surface(layer, end);
+            return self.surface(on, end);
         }
-        let ahead = self.surface(layer, end);
+        let ahead = self.surface(on, end);
         metal.sort_by_key(|(voxel, ..)| *voxel);
         let whole: f64 = metal.iter().map(|(_, volume, _)| volume).sum();
         let mut laid: Vec<(usize, f64)> = Vec::new();
@@ -400,7 +486,11 @@ impl Build {
                 self.touched.push(voxel);
             }
             self.covered[voxel] += alike.iter().map(|(.., area)| area).sum::<f64>();
-            self.body.add(voxel, volume, self.covered[voxel]);
+            let area = match self.frame {
+                Frame::Level(_) => self.covered[voxel],
+                Frame::Space(_) => (self.body.metal(voxel) + volume) / self.body.grid().size(voxel).z,
+            };
+            self.body.add(voxel, volume, area);
             laid.push((voxel, volume));
         }
         laid.iter().for_each(|&(voxel, volume)| self.body.heat(voxel, joules * volume / whole));
@@ -415,7 +505,8 @@ impl Build {
 fn voxels(settings: &HeatSettings, bounds: &Bounds, layers: &[(f64, f64)]) -> (Grid, Vec<usize>, usize) {
     let (voxel, plate) = (settings.voxel(), &settings.substrate);
     let beyond = settings.bead_width / 2.0;
-    let edges = |axis: usize| graded(bounds.min[axis] - beyond, bounds.max[axis] + beyond, plate.margin, voxel);
+    let within = |axis: usize| [bounds.min[axis] - beyond, bounds.max[axis] + beyond];
+    let edges = |axis: usize| graded(within(axis), [plate.margin; 2], voxel);
     let plate_levels = (plate.thickness / voxel).ceil().max(2.0) as usize;
     let bottom = layers.first().map_or(0.0, |(z, height)| z - height);
     let depth = |k: usize| bottom - plate.thickness * (1.0 - k as f64 / plate_levels as f64);

@@ -67,6 +67,16 @@ impl Grid {
         edges.partition_point(|edge| *edge <= at).clamp(1, edges.len() - 1) - 1
     }
 
+    /// The edges of voxels along an axis, mm, ascending.
+    pub(super) fn edges(&self, axis: usize) -> &[f64] {
+        &self.edges[axis]
+    }
+
+    /// Index of the voxel that holds a place; the outermost ones hold all beyond them.
+    pub fn holding(&self, place: DVec3) -> usize {
+        self.column(place.x, place.y, self.along(2, place.z))
+    }
+
     /// Index of the voxel at a place seen from above, in the level `level`.
     pub fn column(&self, x: f64, y: f64, level: usize) -> usize {
         let [_, nx, plane] = self.strides();
@@ -74,21 +84,24 @@ impl Grid {
     }
 }
 
-/// Edges from `low - margin` to `high + margin`: about `size` apart between `low` and `high`, growing outside.
-pub(super) fn graded(low: f64, high: f64, margin: f64, size: f64) -> Vec<f64> {
+/// Edges about `size` apart from `low` to `high`, and growing apart outside, as far as `beyond` (mm) on either side.
+pub(super) fn graded([low, high]: [f64; 2], beyond: [f64; 2], size: f64) -> Vec<f64> {
     /// Each voxel outside is larger than its inner neighbour by this factor.
     const GROWTH: f64 = 1.5;
     let count = ((high - low) / size - 1e-6).ceil().max(1.0);
     let inner = (0..=count as usize).map(|i| low + (high - low) * i as f64 / count);
-    let mut outer = Vec::new();
-    let (mut reach, mut step) = (0.0, size);
-    while margin - reach > 1e-6 {
-        // What would be left is not a voxel of its own.
-        reach = if margin - reach < 1.5 * step { margin } else { reach + step };
-        outer.push(reach);
-        step *= GROWTH;
-    }
-    let below = outer.iter().rev().map(|reach| low - reach);
-    let above = outer.iter().map(|reach| high + reach);
-    below.chain(inner).chain(above).collect()
+    let outer = |margin: f64| {
+        let mut outer = Vec::new();
+        let (mut reach, mut step) = (0.0, size);
+        while margin - reach > 1e-6 {
+            // What would be left is not a voxel of its own.
+            reach = if margin - reach < 1.5 * step { margin } else { reach + step };
+            outer.push(reach);
+            step *= GROWTH;
+        }
+        outer
+    };
+    let [below, above] = beyond.map(outer);
+    let below = below.into_iter().rev().map(|reach| low - reach);
+    below.chain(inner).chain(above.into_iter().map(|reach| high + reach)).collect()
 }

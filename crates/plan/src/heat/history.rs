@@ -1,10 +1,14 @@
 //! The temperatures of a whole plan.
 
 use super::build::{Build, LayerHeat};
+use super::frame::Site;
 use super::settings::HeatSettings;
 use crate::layer::Layer;
+use crate::pass::Pass;
 use crate::weld::WeldSettings;
+use bead_part::chart::Chart;
 use bead_part::task::{Cancelled, Stage, Task};
+use glam::DVec3;
 use planar::Bounds;
 
 /// Temperatures of all layers, and where the heat went.
@@ -51,21 +55,6 @@ impl History {
         }
     }
 
-    /// This body, then another.
-    fn followed_by(mut self, mut next: Self) -> Self {
-        next.layers.iter_mut().for_each(|layer| layer.end += self.seconds);
-        self.layers.append(&mut next.layers);
-        Self {
-            seconds: self.seconds + next.seconds,
-            supplied: self.supplied + next.supplied,
-            lost: self.lost + next.lost,
-            held: self.held + next.held,
-            voxels: self.voxels + next.voxels,
-            voxel: self.voxel.max(next.voxel),
-            ..self
-        }
-    }
-
     /// The hottest metal that a pass meets ahead of the torch: index of layer and pass, °C.
     pub fn hottest_ahead(&self) -> Option<(usize, usize, f64)> {
         let ahead = self.layers.iter().enumerate().flat_map(|(layer, heat)| {
@@ -80,20 +69,44 @@ impl History {
     }
 }
 
-/// The plate before the first of these layers; `None` if there is nothing to build.
+/// What a part begins on, before the first of these layers; `None` if there is nothing to build.
 pub fn plate(layers: &[Layer], settings: &HeatSettings, weld: &WeldSettings) -> Option<Build> {
     let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
     let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points()).copied();
     points.clone().next()?;
+    if !weld.is_level() || layers.iter().any(|layer| layer.body > 0) {
+        return Some(Build::in_space(settings, weld, &sites(layers, &weld.charts, settings.bead_width / 2.0)));
+    }
     // Programs without outlines have the extent of their passes.
     let bounds = settings.over.or_else(|| Bounds::of(outlines)).or_else(|| Bounds::of(points))?;
     let tops: Vec<(f64, f64)> = layers.iter().map(|layer| (layer.z, layer.height)).collect();
     Some(Build::new(settings, weld, &bounds, &tops))
 }
 
+/// Where the bodies of these layers begin, whose beads reach so far beyond their middles, mm.
+fn sites(layers: &[Layer], charts: &[Chart], beyond: f64) -> Vec<Option<Site>> {
+    let site = |(body, chart): (usize, &Chart)| {
+        let own = layers.iter().filter(|layer| layer.body == body);
+        Site::of(chart, &own.flat_map(|layer| places(layer, chart)).collect::<Vec<_>>(), beyond)
+    };
+    charts.iter().enumerate().map(site).collect()
+}
+
+/// How closely the extent of passes in space is known, mm, and how far normals turn from place to place, rad.
+const FOLLOWED: (f64, f64) = (0.2, 0.3);
+
+/// Places along the passes of a layer, at its middle.
+fn places(layer: &Layer, chart: &Chart) -> Vec<DVec3> {
+    let (middle, (tolerance, angle)) = (layer.middle(), FOLLOWED);
+    let sheet = chart.sheet(middle);
+    let starts = layer.passes.iter().filter_map(Pass::start);
+    let segments = layer.passes.iter().flat_map(Pass::segments);
+    let along = segments.flat_map(|s| sheet.divided(s.from, s.to, tolerance, angle));
+    starts.chain(along).map(|p| p.with_z(middle)).collect()
+}
+
 /// Builds all layers; within the limits of the settings if they have some, which changes waits, order and starts of the
-/// layers, and otherwise with the waits that they have. `None` if there is nothing to build. Where a part is welded as several
-/// bodies, each begins on a plate of its own, which is cold.
+/// layers, and otherwise with the waits that they have. `None` if there is nothing to build.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -103,22 +116,11 @@ pub fn history(
     weld: &WeldSettings,
     task: &Task,
 ) -> Result<Option<History>, Cancelled> {
-    let (count, mut done, mut all) = (layers.len(), 0, None::<History>);
-    let several = layers.first().zip(layers.last()).is_some_and(|(first, last)| first.body != last.body);
-    let settings = &HeatSettings { over: settings.over.filter(|_| !several), ..settings.clone() };
-    for body in layers.chunk_by_mut(|a, b| a.body == b.body) {
-        let Some(mut build) = plate(body, settings, weld) else { continue };
-        let (mut heats, first) = (Vec::with_capacity(body.len()), if several { body[0].index } else { 0 });
-        for layer in body {
-            task.step(Stage::Heat, done as f64 / count as f64)?;
-            // A body knows its own layers only.
-            layer.index -= first;
-            heats.push(build.layer_within_limits(layer));
-            layer.index += first;
-            done += 1;
-        }
-        let own = History::of(heats, &build);
-        all = Some(all.map_or(own.clone(), |before| before.followed_by(own)));
+    let Some(mut build) = plate(layers, settings, weld) else { return Ok(None) };
+    let (count, mut heats) = (layers.len(), Vec::with_capacity(layers.len()));
+    for (done, layer) in layers.iter_mut().enumerate() {
+        task.step(Stage::Heat, done as f64 / count as f64)?;
+        heats.push(build.layer_within_limits(layer));
     }
-    Ok(all)
+    Ok(Some(History::of(heats, &build)))
 }

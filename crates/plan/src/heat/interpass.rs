@@ -1,6 +1,7 @@
 //! The limit of the temperature between passes: how long to wait, what to weld meanwhile, and at which end to begin.
 
 use super::build::{Build, LONGEST_WAIT, LayerHeat, NOISE};
+use super::frame::On;
 use super::settings::Interpass;
 use crate::layer::Layer;
 use crate::pass::Pass;
@@ -31,21 +32,21 @@ impl Build {
         let Some(limits) = self.limits().filter(|_| !layer.lit.is_turn()) else {
             return self.layer(layer);
         };
-        let mut heat = self.begin(layer);
+        let (mut heat, on) = (self.begin(layer), self.on(layer));
         let mut queues = if limits.reorder { by_island(layer) } else { vec![layer.passes.drain(..).collect()] };
         let (mut current, mut end) = (0, None);
         while queues.iter().any(|queue| !queue.is_empty()) {
             self.catch_up(None);
-            current = self.next(layer.index, &mut queues, current, end, &limits);
+            current = self.next(on, &mut queues, current, end, &limits);
             let Some(mut pass) = queues[current].pop_front() else { break };
             let Some(start) = pass.start() else { continue };
-            pass.wait += self.wait_for(layer.index, start, limits.max_temperature);
-            if let Some(rest) = self.cut_where_hot(layer.index, &mut pass, &limits) {
+            pass.wait += self.wait_for(on, start, limits.max_temperature);
+            if let Some(rest) = self.cut_where_hot(on, &mut pass, &limits) {
                 heat.cuts.extend(pass.end().map(|end| end.truncate()));
                 queues[current].push_front(rest);
             }
             end = pass.end();
-            heat.passes.extend(self.pass(layer.index, &pass));
+            heat.passes.extend(self.pass(on, &pass));
             layer.passes.push(pass);
         }
         self.end(layer);
@@ -57,13 +58,13 @@ impl Build {
     /// least. Its pass begins where it is coolest if it must wait.
     fn next(
         &self,
-        layer: usize,
+        on: On,
         queues: &mut [VecDeque<Pass>],
         current: usize,
         end: Option<DVec3>,
         limits: &Interpass,
     ) -> usize {
-        let hot = |at: DVec3| self.surface(layer, at.truncate()) - limits.max_temperature;
+        let hot = |at: DVec3| self.surface(on, at.truncate()) - limits.max_temperature;
         let open: Vec<(usize, DVec3)> =
             queues.iter().enumerate().filter_map(|(q, queue)| Some((q, queue.front()?.start()?))).collect();
         let Some(&(first, _)) = open.first() else { return current };
@@ -88,13 +89,13 @@ impl Build {
 
     /// Ends a pass where the metal ahead of the torch would be hotter than the limit, if that holds along passes; returns
     /// the rest, which begins on the end of the bead. Both are long enough to be welded.
-    fn cut_where_hot(&self, layer: usize, pass: &mut Pass, limits: &Interpass) -> Option<Pass> {
+    fn cut_where_hot(&self, on: On, pass: &mut Pass, limits: &Interpass) -> Option<Pass> {
         if !limits.along {
             return None;
         }
         let (width, length) = (self.settings.bead_width, pass.length());
         let shortest = SHORTEST * width;
-        let heat = self.clone().pass(layer, pass)?;
+        let heat = self.clone().pass(on, pass)?;
         let places = heat.along.iter().enumerate().map(|(k, ahead)| (k as f64 * self.spacing(), ahead));
         let hot = |&(at, ahead): &(f64, &f64)| at >= shortest && *ahead > limits.max_temperature + NOISE;
         let (there, _) = places.into_iter().find(hot)?;
@@ -110,10 +111,10 @@ impl Build {
 
     /// How many whole seconds to wait until the metal under the start of a pass is no hotter than `limit` °C when the torch
     /// gets there; [`LONGEST_WAIT`] where it never cools so far.
-    fn wait_for(&mut self, layer: usize, start: DVec3, limit: f64) -> f64 {
+    fn wait_for(&mut self, on: On, start: DVec3, limit: f64) -> f64 {
         let (at, ambient) = (start.truncate(), self.settings.heat.ambient);
         // Metal as cool as this does not get too hot meanwhile.
-        if self.surface(layer, at) <= limit.midpoint(ambient) {
+        if self.surface(on, at) <= limit.midpoint(ambient) {
             return 0.0;
         }
         let (today, now) = (self.body.clone(), self.now);
@@ -122,8 +123,8 @@ impl Build {
             (build.now, build.pending) = (now, 0.0);
             build.body.clone_from(&today);
             build.spend(build.until(wait, start));
-            build.catch_up(Some((layer, at)));
-            build.surface(layer, at) - limit
+            build.catch_up(Some((on, at)));
+            build.surface(on, at) - limit
         };
         let wait = shortest(limit - ambient, |wait| after(self, wait));
         (self.body, self.now, self.pending) = (today, now, 0.0);

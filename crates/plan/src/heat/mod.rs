@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | `settings` | the sections `[material]`, `[substrate]`, `[heat]` and `[interpass]` |
 //! | `grid` | where the voxels lie |
+//! | `frame` | where layers lie among them, level or not |
 //! | `body` | their metal: what it holds, conducts and leaves bare |
 //! | `sweep` | one step in time |
 //! | `build` | the torch moves, metal is laid and heated; temperatures of passes and layers |
@@ -17,6 +18,7 @@
 
 mod body;
 mod build;
+mod frame;
 mod grid;
 mod history;
 mod interpass;
@@ -26,6 +28,7 @@ mod walls;
 
 pub use body::{Air, Body, Stuff};
 pub use build::{Build, LONGEST_WAIT, LayerHeat, MOST_VOXELS, NOISE, PassHeat};
+pub use frame::Site;
 pub use grid::Grid;
 pub use history::{History, history, plate};
 pub use settings::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};

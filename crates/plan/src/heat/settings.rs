@@ -170,6 +170,11 @@ impl HeatSettings {
         [part * 1e-3, self.substrate.conductivity.unwrap_or(part) * 1e-3]
     }
 
+    /// Temperature of the plate before the first pass, °C.
+    pub(super) fn preheat(&self) -> f64 {
+        self.substrate.preheat.unwrap_or(self.heat.ambient)
+    }
+
     /// Size of voxels seen from above, mm.
     pub fn voxel(&self) -> f64 {
         self.heat.voxel.unwrap_or(self.bead_width)

@@ -21,7 +21,7 @@ const WORTH_SHARING: usize = 16_000;
 /// efficiency already.
 const HOTTEST: f64 = 1800.0;
 
-/// This many voxels around the torch, sideways and below, take part in every step.
+/// This many voxels around the torch, on all sides, take part in every step.
 const NEAR: usize = 5;
 
 /// Lines along x that are solved side by side.
@@ -53,7 +53,7 @@ impl Lag {
 pub(super) fn wake(body: &mut Body, voxel: usize) {
     let ([x, y, level], [nx, ny, _]) = (body.grid.place(voxel), body.grid.counts());
     let (tiles, now) = (tiles(&body.grid), body.clock);
-    for k in level.saturating_sub(NEAR)..level + 1 {
+    for k in level.saturating_sub(NEAR)..(level + NEAR + 1).min(body.lags.levels.len()) {
         body.lags.levels[k].heated = now;
     }
     for j in y.saturating_sub(NEAR)..(y + NEAR + 1).min(ny) {
@@ -200,7 +200,7 @@ fn vertical(body: &mut Body, steps: &[f64]) -> f64 {
                 let part = k * plane + within.start..k * plane + within.end;
                 let [capacity, across, bare] = [&capacity[..], &across[2], &bare[2]].map(|all| &all[part.clone()]);
                 let bare = if exposed[2][k] > 0 { bare } else { &[] };
-                let table = if k == 0 { &table[within] } else { &[] };
+                let table = table.get(part.clone()).unwrap_or_default();
                 columns[j * tiles + t].push(Row { theta, capacity, across, bare, table, scale: 1.0 });
             }
         }
