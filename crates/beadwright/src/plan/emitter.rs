@@ -116,8 +116,10 @@ impl<S: Sink> Emitter<'_, S> {
     /// Keeps the limits of `[interpass]`, warns where that is impossible, and widens beads by the heat that they find.
     fn warm(&mut self, layer: &mut Layer) {
         let Some(build) = &mut self.heat.build else { return };
+        // Here it is the only one; for the heat it is one of several.
         layer.body = self.heat.body;
         let heat = build.layer_within_limits(layer);
+        layer.body = 0;
         layer.warnings.extend(heat.cuts.iter().map(|&place| Warning {
             kind: WarningKind::Paused,
             layer: layer.index,

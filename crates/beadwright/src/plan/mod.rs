@@ -146,21 +146,13 @@ pub fn plan_into<'a, S: Sink + Send>(
     let unrolled = Unrolled::of(given, profile, task)?;
     let part = unrolled.as_ref().map_or(given, Unrolled::part);
     let warmth = warm::predicted(part, profile, task)?;
-    let mut heat = heat_in_space(part, profile);
-    let start = Start { heat: heat.as_mut().map(|heat| heat.before(0, &warmth)), ..Start::on_plate(&warmth) };
-    let mut summary = plan_at(start, name, part, profile, task, sink)?;
+    let mut heat = Heat::in_space(part, profile);
+    let mut summary = plan_at(Start::alone(&warmth, heat.as_mut()), name, part, profile, task, sink)?;
     if let (Some(_), PartRef::Mesh { mesh: placed, .. }, PartRef::Mesh { mesh, .. }) = (&unrolled, given, part) {
         summary.notes.extend(charted::notes(placed, mesh, profile));
         summary.forbidden.extend(charted::too_narrow(mesh.bounds().1.z, profile));
     }
     Ok(summary)
-}
-
-/// The heat of a part whose layers are not level, given in the coordinates of its chart.
-fn heat_in_space(part: PartRef, profile: &Profile) -> Option<Heat> {
-    let chart = &profile.layers.chart;
-    let PartRef::Mesh { mesh, .. } = part else { return None };
-    (!chart.is_level()).then(|| Heat::of_bodies(profile, std::iter::once((chart, mesh))))
 }
 
 /// What a part or a body of it begins on.
@@ -173,8 +165,9 @@ struct Start<'a> {
 }
 
 impl<'a> Start<'a> {
-    fn on_plate(warmth: &'a Warmth) -> Self {
-        Self { warmth, footing: Footing::PLATE, heat: None }
+    /// The only body of a part; `heat` where its layers are not level.
+    fn alone(warmth: &'a Warmth, heat: Option<&'a mut Heat>) -> Self {
+        Self { warmth, footing: Footing::PLATE, heat: heat.map(|heat| heat.before(0, warmth)) }
     }
 }
 
@@ -210,9 +203,8 @@ pub fn plan_with<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let mesh = &*charted::unrolled(mesh, profile, task)?;
     let warmth = warm::predicted(mesh.into(), profile, task)?;
-    let mut heat = heat_in_space(mesh.into(), profile);
-    let start = Start { heat: heat.as_mut().map(|heat| heat.before(0, &warmth)), ..Start::on_plate(&warmth) };
-    plan_mesh(start, name, (mesh, None), strategy, profile, task, sink)
+    let mut heat = Heat::in_space(mesh.into(), profile);
+    plan_mesh(Start::alone(&warmth, heat.as_mut()), name, (mesh, None), strategy, profile, task, sink)
 }
 
 fn plan_mesh<S: Sink + Send>(

@@ -48,7 +48,7 @@ pub fn parts_into<S: Sink + Send>(
     for (((name, part), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
         clearance.begin(name);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
-        let own = plan_at(Start::on_plate(warmth), name, *part, profile, task, &mut watch)?;
+        let own = plan_at(Start::alone(warmth, None), name, *part, profile, task, &mut watch)?;
         row.finish(name, *count, &own);
     }
     let mut summary = row.summary("The parts are welded one after another");

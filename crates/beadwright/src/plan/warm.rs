@@ -54,7 +54,7 @@ impl Heat {
         Self { body: 0, build, warmth: warmth.clone() }
     }
 
-    /// What bodies begin on whose layers lie in space, each given by its chart and its mesh there.
+    /// What the bodies of a part begin on, each given by its chart and its mesh in that.
     pub(super) fn of_bodies<'a>(profile: &Profile, bodies: impl Iterator<Item = (&'a Chart, &'a Mesh)>) -> Self {
         let build = settings(profile).map(|settings| {
             let site = |(chart, mesh): (&Chart, &Mesh)| {
@@ -67,6 +67,13 @@ impl Heat {
             Build::in_space(&settings, &profile.weld_settings(), &sites)
         });
         Self { build, ..Self::default() }
+    }
+
+    /// What a part whose layers are not level begins on; `part` is given in the coordinates of its chart.
+    pub(super) fn in_space(part: PartRef, profile: &Profile) -> Option<Self> {
+        let chart = &profile.layers.chart;
+        let PartRef::Mesh { mesh, .. } = part else { return None };
+        (!chart.is_level()).then(|| Self::of_bodies(profile, std::iter::once((chart, mesh))))
     }
 
     /// The same, before the layers of a body.
@@ -98,8 +105,8 @@ pub(super) fn predicted<E>(part: PartRef, profile: &Profile, task: &Task) -> Res
     };
     let Some(wall) = wall else { return Ok(warmth) };
     for _ in 0..ROUNDS {
-        let mut planned = Collect::default();
-        match plan_at(Start::on_plate(&warmth), "", part, profile, task, &mut planned) {
+        let (mut planned, mut heat) = (Collect::default(), Heat::in_space(part, profile));
+        match plan_at(Start::alone(&warmth, heat.as_mut()), "", part, profile, task, &mut planned) {
             Ok(_) => {}
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled.into()),
             // The plan itself reports what is wrong.

@@ -463,6 +463,7 @@ impl Profile {
             interpass: self.interpass,
             bead_area: self.bead().area(),
             bead_width: self.bead.width,
+            on_stock: self.layers.bodies.iter().map(|body| body.on_stock).collect(),
             over: None,
         })
     }

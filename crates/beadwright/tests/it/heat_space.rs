@@ -48,6 +48,28 @@ fn a_build_is_as_warm_however_it_leans() {
     }
 }
 
+/// The plate is as large as the profile says, however it lies.
+#[test]
+fn the_plate_has_its_volume_at_any_angle() {
+    let (plan, mut profile) = planned("cross", &common::profile("cmt-steel-robots"));
+    let bounds = beadwright::layer::bounds(&plan.layers).unwrap();
+    for thickness in [2.0, 7.0, 20.0] {
+        profile.substrate.as_mut().unwrap().thickness = thickness;
+        let margin = profile.substrate.unwrap().margin;
+        // Slices reach a bead's half beyond the passes, about.
+        let size = bounds.size() + 2.0 * margin;
+        for up in ["0/0/1", "1/0/0", "1/1/1", "-0.3/0.2/-0.8"] {
+            profile.layers.chart = format!("plane:up={up},through=0/0/1").parse().unwrap();
+            let build = heat::plate(&plan.layers, &profile.heat_settings().unwrap(), &profile.weld_settings()).unwrap();
+            let body = build.body();
+            let metal: f64 = (0..body.grid().len()).map(|voxel| body.metal(voxel)).sum();
+            let wanted = size.x * size.y * thickness;
+            println!("{thickness} mm, up {up}: {:.3} of the plate", metal / wanted);
+            assert!((metal / wanted - 1.0).abs() < 0.06, "{thickness} mm, {up}: {metal} for {wanted} mm³");
+        }
+    }
+}
+
 #[test]
 fn no_heat_and_no_metal_are_lost_in_space() {
     let base = common::profile("cmt-steel-robots");
@@ -69,7 +91,7 @@ fn no_heat_and_no_metal_are_lost_in_space() {
     }
 }
 
-/// A body that begins on another is not cold, and one that begins beside it is.
+/// A body that begins on another is not cold.
 #[test]
 fn bodies_warm_one_another() {
     let (plan, profile) = planned("y-tube", &common::profile("cmt-steel-robots"));

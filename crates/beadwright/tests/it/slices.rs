@@ -6,7 +6,7 @@ use crate::families;
 use beadwright::fill::coverage::Coverage;
 use beadwright::fill::sound::{self, Fault};
 use beadwright::fill::{Path, StrategyName};
-use beadwright::planar::{DVec2, Polygon, Region, Ring};
+use beadwright::planar::{DVec2, Join, Polygon, Region, Ring};
 use common::profile;
 use std::path::PathBuf;
 
@@ -145,6 +145,41 @@ fn a_toothed_ring_one_bead_thick_is_welded_all_around() {
             assert!(path.closed != cut && around > if cut { 0.85 } else { 0.95 }, "{case}: {around} of the way around");
             assert!(sound::fault(&paths, &island, 0.0).is_none_or(|f| matches!(f, Fault::Outside { .. })), "{case}");
         }
+    }
+}
+
+/// A plate with eight holes a quarter of a bead from its rim, and a slot in each end, turned.
+fn holed_plate(degrees: f64) -> Polygon {
+    let way = DVec2::from_angle(degrees.to_radians());
+    let ring = |points: Vec<DVec2>| Ring::new(points.into_iter().map(|p| way.rotate(p)).collect());
+    let corners = [(-63.5, -31.75), (63.5, -31.75), (63.5, 31.75), (-63.5, 31.75)].map(DVec2::from);
+    let slot = |x: f64, end: f64| {
+        let sides = [(x, -17.5), (end, -17.5), (end, 17.5), (x, 17.5)].map(DVec2::from);
+        Region::from(Polygon::simple(Ring::new(sides.to_vec())))
+    };
+    let rounded = |slot: Region, radius: f64| slot.offset(-radius, Join::ROUND).offset(radius, Join::ROUND);
+    let slots = [rounded(slot(-90.0, -46.8), 12.7), rounded(slot(48.1, 90.0), 3.2)];
+    let plate = Region::from(Polygon::simple(Ring::new(corners.to_vec())));
+    let cut = plate.difference(&slots[0]).difference(&slots[1]).into_polygons().remove(0);
+    let hole = |x: f64, y: f64| {
+        let at = |k: i32| DVec2::new(x, y) + 5.556 * DVec2::from_angle(-f64::from(k) * std::f64::consts::TAU / 36.0);
+        ring((0..36).map(at).collect())
+    };
+    let holes = [-57.1, -28.5, 0.1, 28.7].into_iter().flat_map(|x| [hole(x, -25.4), hole(x, 25.4)]).collect();
+    Polygon { outer: ring(cut.outer.into_points()), holes }
+}
+
+/// Where loops of the usual widths would cross, narrower ones do not: no other strategy takes their place.
+#[test]
+fn plates_with_holes_close_to_their_rim_are_filled_by_the_loop() {
+    use beadwright::{plan, task::Task, warning::WarningKind};
+    let profile = profile("cmt-al2319-kuka");
+    for degrees in [0.0, 10.0, 30.0, 90.0, 200.0] {
+        let mesh = families::extruded(&[holed_plate(degrees)], 2.0 * profile.layers.height).unwrap();
+        let plan = plan::plan("plate", &mesh, &profile, &Task::new()).unwrap();
+        let passes = plan.layers.iter().map(|layer| layer.passes.len()).max();
+        let refilled = plan.summary.warnings.summaries().any(|warning| warning.kind == WarningKind::Refilled);
+        assert!(!refilled && passes.is_some_and(|passes| passes <= 2), "{degrees}°: {refilled}, {passes:?} passes");
     }
 }
 

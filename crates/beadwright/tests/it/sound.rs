@@ -311,7 +311,7 @@ fn bare_strips_along_the_edges_of_polygons_are_measured_as_they_are() {
 /// What much is left bare of is measured on closer rows: strips thinner than the rows' distance make a difference there.
 #[test]
 fn strips_along_thin_rings_are_measured_as_they_are() {
-    for (seed, strategy) in [(20036, "contour"), (20068, "loop"), (20083, "loop")] {
+    for (seed, strategy) in [(20036, "contour"), (20068, "loop"), (20083, "loop"), (113_006, "loop")] {
         let fault = wrong(&islands(6, seed), &profile_by("cmt-al2319-kuka", strategy));
         assert_eq!(fault, None, "{seed}");
     }

@@ -51,6 +51,8 @@ pub struct Body {
     pub(super) air: Air,
     /// One for each level.
     stuff: Vec<Stuff>,
+    /// Of voxels that are not welded, where they may lie in any level, and which those are.
+    stock: Option<(Stuff, Vec<bool>)>,
     /// Above the surroundings, K.
     pub(super) theta: Vec<f64>,
     /// mm³.
@@ -63,10 +65,14 @@ pub struct Body {
     pub(super) across: [Vec<f64>; 3],
     /// Bare area across each axis, mm².
     pub(super) bare: [Vec<f64>; 3],
+    /// All of it, mm².
+    pub(super) bare_area: f64,
     /// Area that lies on the table, mm²: of the lowest level, or of every voxel where any may ([`Self::hold`]).
     pub(super) table: Vec<f64>,
     /// True area of the sides of a level over that of its voxels' sides.
     pub(super) sides: Vec<f64>,
+    /// The same across z.
+    pub(super) upright: f64,
     /// Number of levels that hold metal, from the lowest on.
     pub(super) levels: usize,
     supplied: f64,
@@ -92,6 +98,8 @@ impl Body {
             table: vec![0.0; grid.strides()[2]],
             air,
             stuff,
+            stock: None,
+            bare_area: 0.0,
             theta: none.clone(),
             metal: none.clone(),
             area: none.clone(),
@@ -99,6 +107,7 @@ impl Body {
             across: three(),
             bare: three(),
             sides,
+            upright: 1.0,
             levels: 0,
             supplied: 0.0,
             lost: 0.0,
@@ -139,7 +148,7 @@ impl Body {
     /// from above. [`Self::refresh`] must follow.
     pub(super) fn add(&mut self, voxel: usize, volume: f64, area: f64) {
         let [x, y, level] = self.grid.place(voxel);
-        let capacity = volume * self.stuff[level].capacity;
+        let capacity = volume * self.stuff(voxel).capacity;
         let size = self.grid.size(voxel);
         self.theta[voxel] *= self.capacity[voxel] / (self.capacity[voxel] + capacity).max(f64::MIN_POSITIVE);
         self.capacity[voxel] += capacity;
@@ -198,12 +207,20 @@ impl Body {
         }
     }
 
-    /// The table takes heat through these areas of voxels (mm²) instead of the lowest level.
-    pub(super) fn hold(&mut self, areas: &[(usize, f64)]) {
-        if self.table.len() < self.grid.len() {
-            self.table = vec![0.0; self.grid.len()];
+    /// Metal that is not welded may lie in any level from now on, and only it lies on the table.
+    pub(super) fn with_stock(mut self, stuff: Stuff) -> Self {
+        self.stock = Some((stuff, vec![false; self.grid.len()]));
+        self.table = vec![0.0; self.grid.len()];
+        self
+    }
+
+    /// Metal that is not welded, as [`Self::place`] takes it, and the area (mm²) of each voxel that lies on the table.
+    pub(super) fn hold(&mut self, metal: &[(usize, f64, f64)], areas: &[(usize, f64)], temperature: f64) {
+        if let Some((_, voxels)) = &mut self.stock {
+            metal.iter().for_each(|&(voxel, ..)| voxels[voxel] = true);
         }
         areas.iter().for_each(|&(voxel, area)| self.table[voxel] = area);
+        self.place(metal, temperature);
     }
 
     /// Cross-section of a voxel's metal across an axis, mm².
@@ -214,7 +231,12 @@ impl Body {
     /// Half of the distance through a voxel's metal, over its conductivity, mm²·K/W.
     fn resistance(&self, voxel: usize, axis: usize) -> f64 {
         let length = if axis == 2 { self.metal[voxel] / self.area[voxel] } else { self.grid.size(voxel)[axis] };
-        length / 2.0 / self.stuff[self.grid.place(voxel)[2]].conductivity
+        length / 2.0 / self.stuff(voxel).conductivity
+    }
+
+    fn stuff(&self, voxel: usize) -> Stuff {
+        let stock = self.stock.as_ref().filter(|(_, voxels)| voxels[voxel]);
+        stock.map_or_else(|| self.stuff[self.grid.place(voxel)[2]], |(stuff, _)| *stuff)
     }
 
     fn connect(&mut self, voxel: usize, axis: usize) {
@@ -234,14 +256,15 @@ impl Body {
                 self.section(voxel - strides[axis], axis)
             } else {
                 // The lowest voxels lie on the table.
-                if axis == 2 { own } else { 0.0 }
+                if axis == 2 && self.stock.is_none() { own } else { 0.0 }
             };
-            if axis == 2 && place[2] == 0 && self.table.len() < self.grid.len() {
+            if axis == 2 && place[2] == 0 && self.stock.is_none() {
                 self.table[voxel] = own;
             }
             let bare = (own - before).max(0.0) + (own - after).max(0.0);
             let count = &mut self.exposed[axis][place[2]];
             *count = *count + usize::from(bare > 0.0) - usize::from(self.bare[axis][voxel] > 0.0);
+            self.bare_area += bare - self.bare[axis][voxel];
             self.bare[axis][voxel] = bare;
         }
     }

@@ -11,6 +11,7 @@ use crate::weld::{Torch, WeldSettings, path};
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Metal is laid in pieces of this length, in voxels.
@@ -34,9 +35,6 @@ const PATIENCE: f64 = 2.0;
 
 /// Metal is laid at places this far apart along and across a bead, in voxels.
 const FINE: f64 = 0.25;
-
-/// True area of sides over that of their voxels, where they lie in all directions: a circle's perimeter over that of its square.
-const SLANTED: f64 = std::f64::consts::FRAC_PI_4;
 
 /// Lengths are equal to within this, mm.
 const ROUNDING: f64 = 1e-6;
@@ -120,8 +118,10 @@ pub struct Build {
     pub(super) torch: Torch,
     pub(super) body: Body,
     frame: Frame,
-    /// Where bodies begin that have not begun yet; none where all layers are level.
-    sites: Vec<Option<Site>>,
+    /// Bare area of what the layers of a build in space begin on, as its voxels have it, mm².
+    stock_area: f64,
+    /// The first and the last layer so far of every body in space, mm².
+    ends: BTreeMap<usize, [f64; 2]>,
     /// Side area of the layers in every level, mm².
     sides: Vec<f64>,
     /// Area of each voxel that the current layer covers, mm², and which voxels those are.
@@ -147,15 +147,15 @@ impl Build {
         build
     }
 
-    /// What bodies whose layers lie in space begin on, before the first of them. Where a body begins on a plate or on metal that is
-    /// not welded, this is `substrate.thickness` thick and reaches beyond the body by `substrate.margin`.
+    /// The stock under bodies whose layers are not level, or of which there are several: `substrate.thickness` of metal under the
+    /// first layer of each that begins on a plate or on metal that is not welded, `substrate.margin` wider than it.
     pub fn in_space(settings: &HeatSettings, weld: &WeldSettings, sites: &[Option<Site>]) -> Self {
         let mut settings = settings.clone();
         let Substrate { thickness, margin, .. } = settings.substrate;
         let [welded, all] = Site::boxes(sites.iter().flatten(), thickness, margin);
         let beyond = settings.bead_width / 2.0;
         let edges = |axis: usize, voxel: f64| {
-            // On multiples of the voxel: as warm afterwards, when the extent is a little different.
+            // On multiples of the voxel, so that a slightly different extent gives the same voxels.
             let [low, high] = [welded[0][axis] - beyond, welded[1][axis] + beyond].map(|at| at / voxel);
             let within = [low.floor() * voxel, high.ceil() * voxel];
             graded(within, [within[0] - all[0][axis], all[1][axis] - within[1]], voxel)
@@ -165,39 +165,35 @@ impl Build {
             settings.heat.voxel = Some(1.1 * settings.voxel());
         }
         let grid = grid(settings.voxel());
-        let below = grid.edges(2).iter().filter(|edge| **edge <= welded[0].z).count().saturating_sub(1);
-        let mut build = Self::of(settings, weld, grid, Frame::Space(weld.charts.clone()), below);
-        build.body.sides.fill(SLANTED);
-        build.sites = sites.to_vec();
-        // Bodies that begin on the same surface stand beside one another.
-        let first = sites.iter().flatten().next();
-        let beside =
-            |site: &&mut Option<Site>| site.as_ref().is_some_and(|site| first.is_some_and(|f| f.chart == site.chart));
-        let begun: Vec<Site> = build.sites.iter_mut().filter(beside).filter_map(Option::take).collect();
-        begun.iter().for_each(|site| build.ground(site));
+        let mut build = Self::of(settings, weld, grid, Frame::Space(weld.charts.clone()), 0);
+        let ([_, capacity], [_, conductivity]) = (build.settings.capacities(), build.settings.conductivities());
+        build.body = build.body.with_stock(Stuff { capacity, conductivity });
+        for (body, site) in sites.iter().enumerate() {
+            let on_stock = body == 0 || build.settings.on_stock.get(body).is_some_and(|on_stock| *on_stock);
+            if let Some(site) = site.as_ref().filter(|site| on_stock || site.chart.is_level()) {
+                build.hold(site);
+            }
+        }
+        build.stock_area = build.body.bare_area;
         build
     }
 
     /// Lays what a body begins on.
-    fn ground(&mut self, site: &Site) {
+    fn hold(&mut self, site: &Site) {
         let Substrate { thickness, margin, .. } = self.settings.substrate;
-        let grid = self.body.grid();
-        let lacking = |voxel: usize| {
-            let size = grid.size(voxel);
-            let part = site.part(grid, voxel, [-thickness, 0.0], margin);
-            let lacking = part * size.x * size.y * size.z - self.body.metal(voxel);
-            (lacking > 0.0).then_some((voxel, lacking, part * size.x * size.y))
-        };
-        let laid: Vec<(usize, f64, f64)> = (0..grid.len()).into_par_iter().filter_map(lacking).collect();
-        // The far side lies on the table; the heat that this takes is that of all metal near it.
+        let (grid, body) = (self.body.grid(), &self.body);
+        // The far side lies on the table; the heat that this takes is spread over the voxels within one voxel of it.
         let near = thickness.min(self.settings.voxel());
-        let far = |&(voxel, ..): &(usize, f64, f64)| {
-            let (part, size) = (site.part(grid, voxel, [-thickness, near - thickness], margin), grid.size(voxel));
-            (part > 0.0).then_some((voxel, part * size.x * size.y * size.z / near))
+        let laid = |voxel: usize| {
+            let (size, part) = (grid.size(voxel), |from, to| site.part(grid, voxel, [from, to], margin));
+            let (whole, far) = (part(-thickness, 0.0), part(-thickness, near - thickness));
+            let volume = size.element_product();
+            let lacking = whole * volume - body.metal(voxel);
+            (lacking > 0.0).then_some(((voxel, lacking, whole * size.x * size.y), (voxel, far * volume / near)))
         };
-        let far: Vec<(usize, f64)> = laid.par_iter().filter_map(far).collect();
-        self.body.place(&laid, self.settings.preheat());
-        self.body.hold(&far);
+        let laid: Vec<_> = (0..grid.len()).into_par_iter().filter_map(laid).collect();
+        let (metal, far): (Vec<_>, Vec<_>) = laid.into_iter().unzip();
+        self.body.hold(&metal, &far, self.settings.preheat());
     }
 
     fn of(settings: HeatSettings, weld: &WeldSettings, grid: Grid, frame: Frame, plate_levels: usize) -> Self {
@@ -219,7 +215,8 @@ impl Build {
             touched: Vec::new(),
             body: Body::new(grid, stuff, air),
             frame,
-            sites: Vec::new(),
+            stock_area: 0.0,
+            ends: BTreeMap::new(),
             settings,
             now: 0.0,
             pending: 0.0,
@@ -276,20 +273,7 @@ impl Build {
         self.spend(begun.moving() + begun.waiting());
         self.catch_up(None);
         self.body.settle();
-        if let Some(site) = self.sites.get_mut(layer.body).and_then(Option::take) {
-            self.begin_body(&site, layer);
-        }
         LayerHeat { passes: Vec::new(), below: self.below(layer), end: self.now, cuts: Vec::new() }
-    }
-
-    /// Lays what a body begins on, unless that is metal of those before.
-    fn begin_body(&mut self, site: &Site, layer: &Layer) {
-        let on = self.frame.on(layer);
-        let places = || layer.passes.iter().flat_map(|pass| &pass.points).map(|p| p.truncate());
-        let stands = places().filter(|at| self.frame.uppermost(&self.body, on, *at, self.voxel()).is_some()).count();
-        if 2 * stands < places().count() {
-            self.ground(site);
-        }
     }
 
     /// Mean temperature of what lies below a layer, °C.
@@ -310,20 +294,38 @@ impl Build {
 
     /// Ends a layer: now its sides are known.
     pub(super) fn end(&mut self, layer: &Layer) {
-        let Frame::Level(_) = self.frame else { return };
-        let level = self.on(layer).level;
         let welded = |island: &&Polygon| {
             let starts = layer.passes.iter().filter_map(Pass::start);
             starts.into_iter().any(|start| island.contains(start.truncate()))
         };
         let rings = layer.islands.iter().filter(welded).flat_map(Polygon::rings);
         let around: f64 = rings.map(|ring| ring.length()).sum();
-        self.sides[level] += around * layer.height;
-        let voxels = self.body.voxel_sides(level);
-        if around > 0.0 && voxels > 0.0 {
-            self.body.sides[level..].fill((self.sides[level] / voxels).clamp(0.25, 4.0));
+        if let Frame::Space(_) = self.frame {
+            self.compare_sides(layer, around * layer.height);
+        } else {
+            let level = self.on(layer).level;
+            self.sides[level] += around * layer.height;
+            let voxels = self.body.voxel_sides(level);
+            if around > 0.0 && voxels > 0.0 {
+                self.body.sides[level..].fill((self.sides[level] / voxels).clamp(0.25, 4.0));
+            }
         }
         self.touched.drain(..).for_each(|voxel| self.covered[voxel] = 0.0);
+    }
+
+    /// Compares the surface of what is welded in space with that of its voxels, after a layer with sides of this area, mm².
+    fn compare_sides(&mut self, layer: &Layer, sides: f64) {
+        self.sides[0] += sides;
+        let area = layer.islands.iter().map(Polygon::area).sum();
+        self.ends.entry(layer.body).or_insert([area, area])[1] = area;
+        let [firsts, lasts] = [0, 1].map(|end| self.ends.values().map(|ends| ends[end]).sum::<f64>());
+        // What the first layers cover is bare no longer.
+        let (surface, voxels) = (self.sides[0] + lasts, self.body.bare_area - self.stock_area + firsts);
+        if sides > 0.0 && voxels > 0.0 {
+            let ratio = (surface / voxels).clamp(0.25, 4.0);
+            self.body.sides.fill(ratio);
+            self.body.upright = ratio;
+        }
     }
 
     /// Time passes; the body is advanced by it before its temperatures are next asked for.
@@ -465,7 +467,7 @@ impl Build {
         let part = 1.0 / (along * across * deep) as f64;
         for s in 0..along {
             let middle = from.lerp(to, (s as f64 + 0.5) / along as f64);
-            let add = |voxel| chunk.metal.push((voxel, volume * part, width * length * part));
+            let add = |voxel, seen: f64| chunk.metal.push((voxel, volume * part, width * length * part * seen));
             self.frame.across(self.body.grid(), on, middle, side, [across, deep], add);
         }
     }
@@ -486,9 +488,11 @@ impl Build {
                 self.touched.push(voxel);
             }
             self.covered[voxel] += alike.iter().map(|(.., area)| area).sum::<f64>();
+            // What stands on edge covers as much of its voxel as of the room in it.
+            let filled = (self.body.metal(voxel) + volume) / self.body.grid().size(voxel).z;
             let area = match self.frame {
                 Frame::Level(_) => self.covered[voxel],
-                Frame::Space(_) => (self.body.metal(voxel) + volume) / self.body.grid().size(voxel).z,
+                Frame::Space(_) => self.covered[voxel].max(filled),
             };
             self.body.add(voxel, volume, area);
             laid.push((voxel, volume));

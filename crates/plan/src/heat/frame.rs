@@ -4,7 +4,7 @@ use super::body::Body;
 use super::grid::Grid;
 use crate::layer::Layer;
 use bead_part::chart::{Chart, Sheet};
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3Swizzles};
 use planar::Bounds;
 
 /// Metal below a place is looked for every so many voxels …
@@ -79,7 +79,8 @@ impl Frame {
         }
     }
 
-    /// The voxels that hold a bead across a place: at so many places from edge to edge, `side` (mm) apart, and through its thickness.
+    /// The voxels that hold a bead across a place: at so many places from edge to edge, `side` (mm) apart, and through its thickness;
+    /// each with how much of the bead's area is seen from above.
     pub(super) fn across(
         &self,
         grid: &Grid,
@@ -87,20 +88,21 @@ impl Frame {
         at: DVec2,
         side: DVec2,
         [across, deep]: [usize; 2],
-        mut add: impl FnMut(usize),
+        mut add: impl FnMut(usize, f64),
     ) {
         let part = |k: usize, count: usize| (k as f64 + 0.5) / count as f64 - 0.5;
         match self {
             Self::Level(_) => (0..across).for_each(|t| {
                 let at = at + part(t, across) * side;
-                add(grid.column(at.x, at.y, on.level));
+                add(grid.column(at.x, at.y, on.level), 1.0);
             }),
             Self::Space(charts) => {
                 let here = Self::sheet(charts, on).at(at.extend(on.middle));
                 let side = here.along[0] * side.x + here.along[1] * side.y;
+                let seen = here.normal.z.abs();
                 for d in 0..deep {
                     let middle = here.place + here.normal * on.height * part(d, deep);
-                    (0..across).for_each(|t| add(grid.holding(middle + part(t, across) * side)));
+                    (0..across).for_each(|t| add(grid.holding(middle + part(t, across) * side), seen));
                 }
             }
         }
@@ -139,8 +141,9 @@ impl Site {
     pub fn of(chart: &Chart, places: &[DVec3], beyond: f64) -> Option<Self> {
         let ground = chart.sheet(0.0);
         let Bounds { min, max } = Bounds::of(places.iter().map(|p| ground.across(p.truncate(), &chart.sheet(p.z))))?;
+        let foot = |p: &DVec3| chart.sheet(0.0).at(ground.across(p.truncate(), &chart.sheet(p.z)).extend(0.0)).place;
+        let space = around(places.iter().flat_map(|p| [chart.sheet(p.z).at(*p).place, foot(p)]));
         let ground = Bounds { min: min - beyond, max: max + beyond };
-        let space = around(places.iter().map(|p| chart.sheet(p.z).at(*p).place));
         Some(Self { chart: chart.clone(), space, ground })
     }
 
@@ -168,22 +171,23 @@ impl Site {
     pub(super) fn part(&self, grid: &Grid, voxel: usize, heights: [f64; 2], margin: f64) -> f64 {
         const THIRDS: [f64; 3] = [-1.0 / 3.0, 0.0, 1.0 / 3.0];
         let (middle, size) = (grid.middle(voxel), grid.size(voxel));
-        let height = self.chart.coordinates(middle).z;
-        if height > heights[1] + size.length() / 2.0 || height < heights[0] - size.length() / 2.0 {
+        let at = self.chart.coordinates(middle);
+        let normal = self.chart.sheet(at.z).at(at).normal.abs();
+        // Along the normal, the voxel reaches as far as its own area there says.
+        let half = size.element_product() / (size.yzx() * size.zxy()).dot(normal) / 2.0;
+        let within = (heights[1].min(at.z + half) - heights[0].max(at.z - half)) / (2.0 * half);
+        if within <= 0.0 {
             return 0.0;
         }
         let offsets =
             THIRDS.iter().flat_map(|x| THIRDS.iter().flat_map(|y| THIRDS.iter().map(|z| DVec3::new(*x, *y, *z))));
-        let held = offsets.filter(|offset| self.holds(middle + *offset * size, heights, margin)).count();
-        held as f64 / 27.0
+        let above = offsets.filter(|offset| self.is_above(middle + *offset * size, margin)).count();
+        within * above as f64 / 27.0
     }
 
-    /// Whether a place in space belongs to the metal under the site.
-    fn holds(&self, place: DVec3, heights: [f64; 2], margin: f64) -> bool {
+    /// Whether a place in space lies above or below the ground of the site.
+    fn is_above(&self, place: DVec3, margin: f64) -> bool {
         let at = self.chart.coordinates(place);
-        if !(heights[0]..heights[1]).contains(&at.z) {
-            return false;
-        }
         let (ground, own) = (self.chart.sheet(0.0), self.chart.sheet(at.z));
         let on_it = ground.across(at.truncate(), &own);
         let inside =

@@ -74,7 +74,7 @@ pub fn plate(layers: &[Layer], settings: &HeatSettings, weld: &WeldSettings) -> 
     let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
     let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points()).copied();
     points.clone().next()?;
-    if !weld.is_level() || layers.iter().any(|layer| layer.body > 0) {
+    if !weld.is_level() || weld.charts.len() > 1 {
         return Some(Build::in_space(settings, weld, &sites(layers, &weld.charts, settings.bead_width / 2.0)));
     }
     // Programs without outlines have the extent of their passes.
@@ -86,13 +86,13 @@ pub fn plate(layers: &[Layer], settings: &HeatSettings, weld: &WeldSettings) -> 
 /// Where the bodies of these layers begin, whose beads reach so far beyond their middles, mm.
 fn sites(layers: &[Layer], charts: &[Chart], beyond: f64) -> Vec<Option<Site>> {
     let site = |(body, chart): (usize, &Chart)| {
-        let own = layers.iter().filter(|layer| layer.body == body);
+        let own = layers.iter().filter(|layer| layer.body.min(charts.len() - 1) == body);
         Site::of(chart, &own.flat_map(|layer| places(layer, chart)).collect::<Vec<_>>(), beyond)
     };
     charts.iter().enumerate().map(site).collect()
 }
 
-/// How closely the extent of passes in space is known, mm, and how far normals turn from place to place, rad.
+/// Chord tolerance, mm, and how far normals turn from place to place, rad.
 const FOLLOWED: (f64, f64) = (0.2, 0.3);
 
 /// Places along the passes of a layer, at its middle.

@@ -145,6 +145,8 @@ pub struct HeatSettings {
     pub bead_area: f64,
     /// Width of the nominal bead, mm.
     pub bead_width: f64,
+    /// Whether each body begins on metal that is not welded; the first one does, and level ones stand on a plate.
+    pub on_stock: Vec<bool>,
     /// The box around the part seen from above, where voxels begin; `None` for that of the slices, which may lie a little
     /// differently.
     pub over: Option<Bounds>,

@@ -190,7 +190,7 @@ pub(super) fn tiles(grid: &Grid) -> usize {
 /// The sweep along z, tile by tile, each with its step.
 fn vertical(body: &mut Body, steps: &[f64]) -> f64 {
     let (tiles, [nx, ..], plane) = (tiles(&body.grid), body.grid.counts(), body.grid.strides()[2]);
-    let Body { air, theta, capacity, across, bare, table, levels, exposed, tops, .. } = body;
+    let Body { air, theta, capacity, across, bare, table, levels, exposed, tops, upright, .. } = body;
     let heights: Vec<usize> = tops.iter().zip(steps).map(|(top, step)| if *step > 0.0 { *top } else { 0 }).collect();
     let mut columns: Vec<Vec<Row<'_>>> = heights.iter().map(|height| Vec::with_capacity(*height)).collect();
     for (k, theta) in theta[..plane * *levels].chunks_mut(plane).enumerate() {
@@ -201,7 +201,7 @@ fn vertical(body: &mut Body, steps: &[f64]) -> f64 {
                 let [capacity, across, bare] = [&capacity[..], &across[2], &bare[2]].map(|all| &all[part.clone()]);
                 let bare = if exposed[2][k] > 0 { bare } else { &[] };
                 let table = table.get(part.clone()).unwrap_or_default();
-                columns[j * tiles + t].push(Row { theta, capacity, across, bare, table, scale: 1.0 });
+                columns[j * tiles + t].push(Row { theta, capacity, across, bare, table, scale: *upright });
             }
         }
     }

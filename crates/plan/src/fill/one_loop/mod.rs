@@ -133,12 +133,14 @@ impl Strategy for OneLoop {
         passes.into_iter().map(fill_of).collect()
     }
 
-    /// Without a spiral, and without relaxation.
+    /// Without a spiral, with beads as narrow as those of thin walls, and without relaxation.
     fn simpler<'a>(&self, settings: &FillSettings<'a>) -> Vec<FillSettings<'a>> {
         let given = settings.one_loop;
         let without = |one_loop: LoopOptions| FillSettings { one_loop, ..*settings };
+        let narrowest = given.width_limits.0.min(settings.wall.width_limits.0);
+        let narrow = LoopOptions { width_limits: (narrowest, given.width_limits.1), ..given };
         let plain = LoopOptions { rounds: 0, ..given };
-        [LoopOptions { spirals: false, ..given }, plain, LoopOptions { spirals: false, ..plain }]
+        [LoopOptions { spirals: false, ..given }, narrow, plain, LoopOptions { spirals: false, ..plain }]
             .into_iter()
             .filter(|options| *options != given)
             .map(without)
