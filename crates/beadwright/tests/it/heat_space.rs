@@ -43,7 +43,7 @@ fn a_build_is_as_warm_however_it_leans() {
             let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
             let worst = ratios.iter().map(|ratio| (ratio - 1.0).abs()).fold(0.0, f64::max);
             println!("{name}, up {up}: {mean:.3} times as warm, worst layer off by {worst:.3}");
-            assert!((mean - 1.0).abs() < 0.18 && worst < 0.22, "{name}, {up}: {mean} {worst}");
+            assert!((mean - 1.0).abs() < 0.07 && worst < 0.15, "{name}, {up}: {mean} {worst}");
         }
     }
 }

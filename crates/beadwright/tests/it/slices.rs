@@ -169,12 +169,12 @@ fn holed_plate(degrees: f64) -> Polygon {
     Polygon { outer: ring(cut.outer.into_points()), holes }
 }
 
-/// Where loops of the usual widths would cross, narrower ones do not: no other strategy takes their place.
+/// Small rings before the necks lie across the loop: they are left out, and no other strategy takes its place.
 #[test]
 fn plates_with_holes_close_to_their_rim_are_filled_by_the_loop() {
     use beadwright::{plan, task::Task, warning::WarningKind};
     let profile = profile("cmt-al2319-kuka");
-    for degrees in [0.0, 10.0, 30.0, 90.0, 200.0] {
+    for degrees in [0.0, 10.0, 30.0, 45.0, 77.0, 90.0, 133.0, 200.0, 270.0, 310.0] {
         let mesh = families::extruded(&[holed_plate(degrees)], 2.0 * profile.layers.height).unwrap();
         let plan = plan::plan("plate", &mesh, &profile, &Task::new()).unwrap();
         let passes = plan.layers.iter().map(|layer| layer.passes.len()).max();

@@ -67,11 +67,6 @@ impl Grid {
         edges.partition_point(|edge| *edge <= at).clamp(1, edges.len() - 1) - 1
     }
 
-    /// The edges of voxels along an axis, mm, ascending.
-    pub(super) fn edges(&self, axis: usize) -> &[f64] {
-        &self.edges[axis]
-    }
-
     /// Index of the voxel that holds a place; the outermost ones hold all beyond them.
     pub fn holding(&self, place: DVec3) -> usize {
         self.column(place.x, place.y, self.along(2, place.z))

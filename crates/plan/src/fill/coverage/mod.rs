@@ -12,10 +12,8 @@ use strip::{Disc, Span, Strip, union};
 
 /// Rows in a bead's width, and where these are too few.
 const ROWS: [f64; 2] = [6.0, 12.0];
-/// They may be too few where more than this part of a region is bare, since strips thinner than their distance then matter,
+/// They are too few where more than this part of a region is bare, since strips thinner than their distance then matter.
 const MUCH: f64 = 0.03;
-/// and they are if every other one finds more or less than the others by this part of the region.
-const UNSURE: f64 = 0.001;
 /// The rows are slanted, radians, since beads or edges along them would be counted in whole rows: at the first of these angles
 /// at which they measure the region itself [`WELL`] and none of its edges runs along them, or at the best one. Few of them lie
 /// along the edges of the same regular polygon.
@@ -125,9 +123,7 @@ impl Coverage {
     pub fn of(paths: &[&Path], region: &Region, width: f64) -> Option<Self> {
         let [coarse, fine] = ROWS.map(|rows| width / rows);
         let found = Self::on_rows(paths, region, coarse)?;
-        let area = region.area();
-        let [even, odd] = found.bare_by_rows();
-        let is_fine = even + odd < MUCH * area || (even - odd).abs() < UNSURE * area;
+        let is_fine = found.bare().area < MUCH * region.area();
         if is_fine { Some(found) } else { Self::on_rows(paths, region, fine) }
     }
 
@@ -146,16 +142,6 @@ impl Coverage {
     /// What is left bare of the region.
     pub fn bare(&self) -> Bare {
         self.bare_between(&self.inside, 0)
-    }
-
-    /// What every other row finds bare, and the rows between them, mm².
-    fn bare_by_rows(&self) -> [f64; 2] {
-        let mut areas = [0.0; 2];
-        for (k, (inside, covered)) in self.inside.iter().zip(self.covered.iter()).enumerate() {
-            let gaps = inside.chunks_exact(2).flat_map(|span| gaps(span[0]..span[1], covered));
-            areas[k % 2] += gaps.map(|gap| gap.end - gap.start).sum::<f64>() * self.grid.step;
-        }
-        areas
     }
 
     /// What is left bare of another region that lies within this one.

@@ -22,7 +22,8 @@ const OUT: f64 = 0.005;
 /// Where lines lie so close that they would cross, they deviate by no more than these fractions of the tolerance.
 const CLOSER: [f64; 3] = [1.0, 0.3, 0.05];
 
-/// The lines, made of few pieces; lines that do not cross do not cross afterwards.
+/// The lines, made of few pieces; lines that do not cross do not cross afterwards. Rings too short to be welded are left out where
+/// they cross others: those lay their metal.
 pub fn all_finished(lines: &[Line], room: &Room, settings: &LoopSettings) -> Vec<Line> {
     let finished = |closer: &f64| {
         let tolerance = TOLERANCE * settings.width_step * closer;
@@ -30,10 +31,15 @@ pub fn all_finished(lines: &[Line], room: &Room, settings: &LoopSettings) -> Vec
     };
     let [first, others @ ..] = CLOSER.each_ref();
     let first = finished(first);
-    if !tangled(&first) || tangled(lines) {
+    if !tangled(&first) {
         return first;
     }
-    others.into_iter().map(finished).find(|lines| !tangled(lines)).unwrap_or(first)
+    if !tangled(lines) {
+        return others.into_iter().map(finished).find(|lines| !tangled(lines)).unwrap_or(first);
+    }
+    let is_long = |line: &Line| !line.closed || line.length() >= settings.shortest;
+    let long: Vec<Line> = first.iter().filter(|line| is_long(line)).cloned().collect();
+    if long.is_empty() { first } else { long }
 }
 
 /// The line, made of few pieces.
