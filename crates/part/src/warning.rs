@@ -241,9 +241,12 @@ impl WarningSummary {
             WarningKind::NothingBelow => {
                 format!("{layers}: no bead lies below; these would be laid {size:.2} mm above the last one {place}.")
             }
+            WarningKind::InTheAir if self.count == 1 => {
+                format!("{layers}: 1 pass hangs over nothing, for {size:.1} mm {place}.")
+            }
             WarningKind::InTheAir => format!(
-                "{layers}: {} over nothing, for {total:.1} mm in all, the longest for {size:.1} mm {place}.",
-                times("pass hangs", "passes hang")
+                "{layers}: {} passes hang over nothing, for {total:.1} mm in all, the longest for {size:.1} mm {place}.",
+                self.count
             ),
             WarningKind::HangingIsland => format!(
                 "{layers}: {} with nothing below left out, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",

@@ -25,6 +25,8 @@ const SMALL_PART: f64 = 0.5;
 const STUB: f64 = 2.0;
 /// Places per bead width at which a pass is looked at.
 const SAMPLES: f64 = 4.0;
+/// Beads sag onto a plate that lies no farther below them than this, in heights of a layer.
+const SAGS: f64 = 1.25;
 /// An island rests on another if they share this part of the smaller one's area or more.
 const RESTS: f64 = 0.05;
 
@@ -111,7 +113,9 @@ impl Support {
             self.islands.append(&mut self.before.1);
         }
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
-        let on_plate = self.footing.plate && !self.begun;
+        // What begins within the first layer shows in the next one only.
+        let near_plate = layer.z - layer.height <= SAGS * profile.layers.height;
+        let on_plate = self.footing.plate && (!self.begun || near_plate);
         if !on_plate && !alike {
             let (metal, there) = (Metal::of(&self.passes, width), self.there(layer, profile));
             let below = if solid { &there[..] } else { &[&there[..], &self.islands[..]].concat()[..] };

@@ -241,8 +241,9 @@ async function start() {
   }
   if (!deep) withoutSolid("This browser has no WebGL 2, so there is no 3-D view; every layer is shown from above.");
   // Where the program should not be started, the place is seen first.
-  const worst = document.querySelector(".refused button");
-  await show(worst ? Number(worst.dataset.layer) : heads.findLastIndex(head => head.passes));
+  const worst = document.querySelector(".refused button")?.dataset;
+  if (worst) closeUp(Number(worst.layer), Number(worst.x), Number(worst.y));
+  await show(worst ? Number(worst.layer) : heads.findLastIndex(head => head.passes));
   if (deep) readSolid();
 }
 start();

@@ -65,6 +65,13 @@ function pointOutNext(by) {
 
 // The layer and the place of a warning, closer.
 function goTo(layer, x, y) {
+  closeUp(layer, x, y);
+  $("viewer").scrollIntoView({ block: "start" });
+  show(layer);
+}
+
+// Both pictures close to a place, which is marked.
+function closeUp(layer, x, y) {
   shown.mark = { layer, x, y };
   const room = 16 * data.bead.width;
   view.scale = Math.min(view.width, view.height) / room;
@@ -72,6 +79,4 @@ function goTo(layer, x, y) {
   view.y = view.height / 2 + view.scale * y;
   view.fitted = false;
   Object.assign(space.camera, { target: inSpace(layer, x, y, heads[layer].height / 2), distance: 2.5 * room, fitted: false });
-  $("viewer").scrollIntoView({ block: "start" });
-  show(layer);
 }

@@ -62,6 +62,19 @@ fn a_bridge_between_two_towers_is_in_the_air() {
     assert!(!plan.summary.forbidden.is_empty());
 }
 
+/// A slab that begins within the first layer, which its slice misses, sags onto the plate; one a layer higher does not.
+#[test]
+fn what_begins_within_the_first_layer_is_laid_onto_the_plate() {
+    for (from, hangs) in [(1.4, false), (3.2, true)] {
+        let slab = [(80.0, 190.0), (0.0, 60.0), (from, 12.0)];
+        for degrees in [0.0, 17.0] {
+            let plan = planned(&blocks(&[BASE, slab], degrees), "loop");
+            assert_eq!(!plan.summary.forbidden.is_empty(), hangs, "from {from} mm: {:?}", plan.summary.forbidden);
+            assert!(warning(&plan, WarningKind::Overhang).is_some(), "from {from} mm at {degrees}°");
+        }
+    }
+}
+
 /// A knob of two layers that hangs beside the part is left out; the rest is built.
 #[test]
 fn a_small_island_that_hangs_is_left_out() {
