@@ -419,7 +419,7 @@ mod tests {
         // Its edges run along the first rows: others measure it.
         let turned = square(20.0).turned(DVec2::from_angle(ASLANT[0]));
         let nothing = bare(&[], &turned, 4.0);
-        assert!((nothing.area - 400.0).abs() < 0.01 && turned.contains(nothing.place), "{nothing:?}");
+        assert!((nothing.area - 400.0).abs() < 0.1 && turned.contains(nothing.place), "{nothing:?}");
     }
 
     /// A strip along the first rows would be measured in whole rows.
@@ -464,7 +464,7 @@ mod tests {
                 bare(&[&whole], &square(60.0), width).area,
                 bare(&parts.iter().collect::<Vec<_>>(), &square(60.0), width).area,
             );
-            assert!(one < 3400.0 && (one - each).abs() < 1e-3, "{one} {each} at {turn}");
+            assert!(one < 3400.0 && (one - each).abs() < 1e-2, "{one} {each} at {turn}");
         }
     }
 
