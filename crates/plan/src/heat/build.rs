@@ -1,17 +1,16 @@
 //! A part being built: metal is laid as the torch goes, heated by the arc, and cools meanwhile.
 
 use super::body::{Air, Body, Stuff};
-use super::frame::{Frame, On, Site};
+use super::frame::{Frame, On};
 use super::grid::{Grid, graded};
-use super::settings::{HeatSettings, Interpass, Substrate};
+use super::settings::{HeatSettings, Interpass};
+use super::space::Skin;
 use crate::layer::Layer;
 use crate::pass::Pass;
 use crate::process::Process;
 use crate::weld::{Torch, WeldSettings, path};
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon};
-use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Metal is laid in pieces of this length, in voxels.
@@ -118,10 +117,8 @@ pub struct Build {
     pub(super) torch: Torch,
     pub(super) body: Body,
     frame: Frame,
-    /// Bare area of what the layers of a build in space begin on, as its voxels have it, mm².
-    stock_area: f64,
-    /// The first and the last layer so far of every body in space, mm².
-    ends: BTreeMap<usize, [f64; 2]>,
+    /// What is known of the surface of a build in space.
+    pub(super) skin: Skin,
     /// Side area of the layers in every level, mm².
     sides: Vec<f64>,
     /// Area of each voxel that the current layer covers, mm², and which voxels those are.
@@ -147,56 +144,13 @@ impl Build {
         build
     }
 
-    /// The stock under bodies whose layers are not level, or of which there are several: `substrate.thickness` of metal under the
-    /// first layer of each that begins on a plate or on metal that is not welded, `substrate.margin` wider than it.
-    pub fn in_space(settings: &HeatSettings, weld: &WeldSettings, sites: &[Option<Site>]) -> Self {
-        let mut settings = settings.clone();
-        let Substrate { thickness, margin, .. } = settings.substrate;
-        let [welded, all] = Site::boxes(sites.iter().flatten(), thickness, margin);
-        let beyond = settings.bead_width / 2.0;
-        let edges = |axis: usize, voxel: f64| {
-            // On multiples of the voxel, so that a slightly different extent gives the same voxels.
-            let [low, high] = [welded[0][axis] - beyond, welded[1][axis] + beyond].map(|at| at / voxel);
-            let within = [low.floor() * voxel, high.ceil() * voxel];
-            graded(within, [within[0] - all[0][axis], all[1][axis] - within[1]], voxel)
-        };
-        let grid = |voxel: f64| Grid::new([edges(0, voxel), edges(1, voxel), edges(2, voxel)]);
-        while grid(settings.voxel()).len() > MOST_VOXELS {
-            settings.heat.voxel = Some(1.1 * settings.voxel());
-        }
-        let grid = grid(settings.voxel());
-        let mut build = Self::of(settings, weld, grid, Frame::Space(weld.charts.clone()), 0);
-        let ([_, capacity], [_, conductivity]) = (build.settings.capacities(), build.settings.conductivities());
-        build.body = build.body.with_stock(Stuff { capacity, conductivity });
-        for (body, site) in sites.iter().enumerate() {
-            let on_stock = body == 0 || build.settings.on_stock.get(body).is_some_and(|on_stock| *on_stock);
-            if let Some(site) = site.as_ref().filter(|site| on_stock || site.chart.is_level()) {
-                build.hold(site);
-            }
-        }
-        build.stock_area = build.body.bare_area;
-        build
-    }
-
-    /// Lays what a body begins on.
-    fn hold(&mut self, site: &Site) {
-        let Substrate { thickness, margin, .. } = self.settings.substrate;
-        let (grid, body) = (self.body.grid(), &self.body);
-        // The far side lies on the table; the heat that this takes is spread over the voxels within one voxel of it.
-        let near = thickness.min(self.settings.voxel());
-        let laid = |voxel: usize| {
-            let (size, part) = (grid.size(voxel), |from, to| site.part(grid, voxel, [from, to], margin));
-            let (whole, far) = (part(-thickness, 0.0), part(-thickness, near - thickness));
-            let volume = size.element_product();
-            let lacking = whole * volume - body.metal(voxel);
-            (lacking > 0.0).then_some(((voxel, lacking, whole * size.x * size.y), (voxel, far * volume / near)))
-        };
-        let laid: Vec<_> = (0..grid.len()).into_par_iter().filter_map(laid).collect();
-        let (metal, far): (Vec<_>, Vec<_>) = laid.into_iter().unzip();
-        self.body.hold(&metal, &far, self.settings.preheat());
-    }
-
-    fn of(settings: HeatSettings, weld: &WeldSettings, grid: Grid, frame: Frame, plate_levels: usize) -> Self {
+    pub(super) fn of(
+        settings: HeatSettings,
+        weld: &WeldSettings,
+        grid: Grid,
+        frame: Frame,
+        plate_levels: usize,
+    ) -> Self {
         let ([part, substrate], [k_part, k_plate]) = (settings.capacities(), settings.conductivities());
         let stuff = |k: usize| match k < plate_levels {
             true => Stuff { capacity: substrate, conductivity: k_plate },
@@ -215,8 +169,7 @@ impl Build {
             touched: Vec::new(),
             body: Body::new(grid, stuff, air),
             frame,
-            stock_area: 0.0,
-            ends: BTreeMap::new(),
+            skin: Skin::default(),
             settings,
             now: 0.0,
             pending: 0.0,
@@ -311,21 +264,6 @@ impl Build {
             }
         }
         self.touched.drain(..).for_each(|voxel| self.covered[voxel] = 0.0);
-    }
-
-    /// Compares the surface of what is welded in space with that of its voxels, after a layer with sides of this area, mm².
-    fn compare_sides(&mut self, layer: &Layer, sides: f64) {
-        self.sides[0] += sides;
-        let area = layer.islands.iter().map(Polygon::area).sum();
-        self.ends.entry(layer.body).or_insert([area, area])[1] = area;
-        let [firsts, lasts] = [0, 1].map(|end| self.ends.values().map(|ends| ends[end]).sum::<f64>());
-        // What the first layers cover is bare no longer.
-        let (surface, voxels) = (self.sides[0] + lasts, self.body.bare_area - self.stock_area + firsts);
-        if sides > 0.0 && voxels > 0.0 {
-            let ratio = (surface / voxels).clamp(0.25, 4.0);
-            self.body.sides.fill(ratio);
-            self.body.upright = ratio;
-        }
     }
 
     /// Time passes; the body is advanced by it before its temperatures are next asked for.

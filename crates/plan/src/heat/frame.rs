@@ -7,10 +7,10 @@ use bead_part::chart::{Chart, Sheet};
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use planar::Bounds;
 
-/// Metal below a place is looked for every so many voxels …
+/// Metal below a place is looked for in steps of half a voxel …
 const STEP: f64 = 0.5;
 
-/// … down to this many voxels below the middle of the layer.
+/// … down to six voxels below the middle of the layer.
 const DEEPEST: f64 = 6.0;
 
 /// A voxel with less metal than this part of what it holds is the edge of metal that lies in the next one.
@@ -71,7 +71,7 @@ impl Frame {
         }
     }
 
-    /// Voxels through the thickness of a layer, if metal is laid at places this far apart, mm.
+    /// At how many places through the thickness of a layer metal is laid, if they are this far apart, mm.
     pub(super) fn deep(&self, on: On, apart: f64) -> usize {
         match self {
             Self::Level(_) => 1,
@@ -79,8 +79,8 @@ impl Frame {
         }
     }
 
-    /// The voxels that hold a bead across a place: at so many places from edge to edge, `side` (mm) apart, and through its thickness;
-    /// each with how much of the bead's area is seen from above.
+    /// The voxels that hold the cross-section of a bead: looked up at `across` places from edge to edge (`side`, mm) and `deep` ones
+    /// through its thickness; each with the part of the bead's area that is seen from above.
     pub(super) fn across(
         &self,
         grid: &Grid,
@@ -108,7 +108,7 @@ impl Frame {
         }
     }
 
-    /// The uppermost metal below a place: how high it lies, in voxels from anywhere, and its voxel.
+    /// The uppermost metal below a place: its level, or minus its depth in voxels, and its voxel.
     pub(super) fn uppermost(&self, body: &Body, on: On, at: DVec2, voxel: f64) -> Option<(isize, usize)> {
         let grid = body.grid();
         match self {

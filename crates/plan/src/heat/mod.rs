@@ -9,6 +9,7 @@
 //! | `settings` | the sections `[material]`, `[substrate]`, `[heat]` and `[interpass]` |
 //! | `grid` | where the voxels lie |
 //! | `frame` | where layers lie among them, level or not |
+//! | `space` | builds whose layers are not level, and what their bodies begin on |
 //! | `body` | their metal: what it holds, conducts and leaves bare |
 //! | `sweep` | one step in time |
 //! | `build` | the torch moves, metal is laid and heated; temperatures of passes and layers |
@@ -23,6 +24,7 @@ mod grid;
 mod history;
 mod interpass;
 mod settings;
+mod space;
 mod sweep;
 mod walls;
 

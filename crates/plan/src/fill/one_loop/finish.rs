@@ -22,8 +22,8 @@ const OUT: f64 = 0.005;
 /// Where lines lie so close that they would cross, they deviate by no more than these fractions of the tolerance.
 const CLOSER: [f64; 3] = [1.0, 0.3, 0.05];
 
-/// The lines, made of few pieces; lines that do not cross do not cross afterwards. Rings too short to be welded are left out where
-/// they cross others: those lay their metal.
+/// The lines, made of few pieces; lines that do not cross do not cross afterwards. Where some do, rings that are too short to be
+/// welded anyway are left out: before narrow necks they lie across the loop.
 pub fn all_finished(lines: &[Line], room: &Room, settings: &LoopSettings) -> Vec<Line> {
     let finished = |closer: &f64| {
         let tolerance = TOLERANCE * settings.width_step * closer;
