@@ -57,7 +57,10 @@ async function show(index) {
   slider.value = index;
   const layer = await layerAt(index);
   if (wanted !== index) return;
-  Object.assign(shown, { layer, index });
+  // Layers that are not level are unrolled, each in its own way.
+  const lower = shown.below && index && !data.lies.length ? await layerAt(index - 1) : null;
+  if (wanted !== index) return;
+  Object.assign(shown, { layer, index, lower });
   tellLayer();
   tellProgress();
   drawBars();
@@ -172,6 +175,7 @@ function connect() {
   for (const name of ["width", "travels", "ends", "outline"]) {
     $(`show-${name}`).onchange = event => { shown[name] = event.target.checked; redraw(); };
   }
+  $("show-below").onchange = event => { shown.below = event.target.checked; show(shown.index); };
   document.querySelectorAll("[name=colour]").forEach(radio => {
     radio.onchange = () => { shown.by = radio.value; showKey(); redraw(); };
   });
@@ -225,6 +229,7 @@ function offer(name, there) {
 async function start() {
   if (!heads.length) return void ($("viewer").hidden = $("clock").hidden = true);
   offer("judged", data.maps.length > 0);
+  offer("level", !data.lies.length && heads.length > 1);
   offer("warmed", data.warmth.length > 0);
   if (data.maps.length) drawKey($("heat-ramp"), part => heatAt(FULL_SCALE * part));
   readColours();
@@ -242,7 +247,10 @@ async function start() {
   if (!deep) withoutSolid("This browser has no WebGL 2, so there is no 3-D view; every layer is shown from above.");
   // Where the program should not be started, the place is seen first.
   const worst = document.querySelector(".refused button")?.dataset;
-  if (worst) closeUp(Number(worst.layer), Number(worst.x), Number(worst.y));
+  if (worst) {
+    shown.below = $("show-below").checked = true;
+    closeUp(Number(worst.layer), Number(worst.x), Number(worst.y));
+  }
   await show(worst ? Number(worst.layer) : heads.findLastIndex(head => head.passes));
   if (deep) readSolid();
 }

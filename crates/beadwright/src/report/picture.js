@@ -3,8 +3,8 @@
 const CHUNKS = 240;
 const picture = $("picture");
 const view = { scale: 1, x: 0, y: 0, width: 0, height: 0, fitted: true };
-// `by` is a key of CHOICES; `picked` { layer, pass } and `mark` { layer, x, y } are pointed out.
-const shown = { layer: null, index: 0, until: Infinity, by: "kind", width: true, travels: true, ends: true, outline: true, picked: null, mark: null };
+// `by` is a key of CHOICES; `lower` is the layer below, while it is to be seen; `picked` { layer, pass } and `mark` { layer, x, y } are pointed out.
+const shown = { layer: null, index: 0, until: Infinity, by: "kind", width: true, travels: true, ends: true, outline: true, below: false, lower: null, picked: null, mark: null };
 
 // The whole part in the middle; the same for all layers, so that they can be compared.
 const partBox = heads.reduce((b, h) => h.points ? {
@@ -57,8 +57,8 @@ function pathOf(points, path = new Path2D()) {
 }
 
 // What of a pass is to be drawn, as paths with a colour and a width each.
-function strokes(pass, layer) {
-  const until = Math.min(pass.end, shown.until), { times, along } = pass, wide = along[0][0];
+function strokes(pass, layer, limit = shown.until) {
+  const until = Math.min(pass.end, limit), { times, along } = pass, wide = along[0][0];
   if (along.length > 1) {
     const list = [];
     for (let i = 0; i + 1 < times.length && (!i || times[i] < until); i++) {
@@ -111,6 +111,31 @@ function drawBeads(ctx, passes, layer) {
   }
 }
 
+// Strokes of one colour along passes, `part` of each bead's width wide.
+function strokeAll(ctx, layer, passes, until, part, colour) {
+  ctx.strokeStyle = colour;
+  for (const { path, wide } of passes.flatMap(pass => strokes(pass, layer, until))) {
+    ctx.lineWidth = part * wide;
+    ctx.stroke(path);
+  }
+}
+
+// The middle of each bead where none lies below: drawn on a canvas of its own, less the beads of the layer below.
+const overlay = document.createElement("canvas");
+function drawHanging(ctx, passes, layer, lower) {
+  Object.assign(overlay, { width: picture.width, height: picture.height });
+  const over = overlay.getContext("2d");
+  over.setTransform(ctx.getTransform());
+  over.lineCap = over.lineJoin = "round";
+  strokeAll(over, layer, passes, shown.until, 0.5, rgb(VOID_COLOUR));
+  over.globalCompositeOperation = "destination-out";
+  strokeAll(over, lower, lower.passes, Infinity, 1, "#000000");
+  ctx.save();
+  ctx.setTransform(1, 0, 0, 1, 0, 0);
+  ctx.drawImage(overlay, 0, 0);
+  ctx.restore();
+}
+
 function drawTravels(ctx, passes) {
   const pixel = 1 / view.scale, path = new Path2D();
   for (let i = 1; i < passes.length; i++) {
@@ -155,14 +180,14 @@ function drawTorch(ctx, pass) {
 
 function drawWarnings(ctx, warnings) {
   const size = 9 / view.scale;
-  for (const [x, y] of warnings) {
+  for (const [x, y, , serious] of warnings) {
     ctx.beginPath();
     ctx.moveTo(x, y + size);
     ctx.lineTo(x + size, y - 0.7 * size);
     ctx.lineTo(x - size, y - 0.7 * size);
     ctx.closePath();
-    ctx.fillStyle = colours.stage;
-    ctx.strokeStyle = colours.mark;
+    ctx.fillStyle = serious ? colours.end : colours.stage;
+    ctx.strokeStyle = serious ? colours.stage : colours.mark;
     ctx.lineWidth = 2.2 / view.scale;
     ctx.fill();
     ctx.stroke();
@@ -234,10 +259,13 @@ function draw() {
   ctx.fillStyle = colours.slice;
   ctx.fill(layer.outline, "evenodd");
   const passes = layer.passes.filter(pass => pass.xy.length && (pass.start < shown.until || pass.end <= shown.until));
+  const lower = shown.below && shown.lower?.index === layer.index - 1 && shown.lower;
+  if (lower) strokeAll(ctx, lower, lower.passes, Infinity, 1, colours.travel);
   if (shown.by === "heat") fetchMap(layer);
   const heat = shown.by === "heat" && layer.map;
   if (heat) drawMap(ctx, layer.map, view.scale);
   else drawBeads(ctx, passes, layer);
+  if (lower) drawHanging(ctx, passes, layer, lower);
   if (shown.outline) {
     ctx.strokeStyle = colours.outline;
     ctx.lineWidth = 1.4 / view.scale;

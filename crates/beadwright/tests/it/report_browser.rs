@@ -5,7 +5,9 @@
 use crate::common;
 
 use beadwright::model::RepairReport;
+use beadwright::pass::Along;
 use beadwright::plan::Plan;
+use beadwright::planar::DVec3;
 use beadwright::profile::Profile;
 use beadwright::report::Report;
 use std::path::{Path, PathBuf};
@@ -147,4 +149,35 @@ fn without_webgl_a_sentence_says_so_and_the_layers_stay() {
     assert_eq!(answer["view"], "layer");
     assert!(answer["sentence"].as_str().unwrap().contains("no WebGL 2"));
     assert_eq!(answer["passes"], plan.layers.last().unwrap().passes.len());
+}
+
+/// With the layer below, beads are pink along their middle where none lies under them, and only there.
+#[test]
+fn what_hangs_over_the_layer_below_is_pink() {
+    let profile = common::profile("cmt-al2319-kuka");
+    let mut plan = common::planned("cross", &profile);
+    plan.layers.truncate(2);
+    for (layer, length) in plan.layers.iter_mut().zip([40.0, 80.0]) {
+        let mut pass = layer.passes[0].clone();
+        pass.points = [0.0, length].map(|x| DVec3::new(x, 0.0, layer.z)).to_vec();
+        (pass.closed, pass.width, pass.pace) = (false, Along::Same(6.0), Along::Same(1.0));
+        (layer.islands, layer.passes) = (Vec::new(), vec![pass]);
+    }
+    let script = "
+        const pink = x => {
+          const ratio = picture.width / view.width, at = v => Math.round(ratio * v);
+          const [r, g, b] = picture.getContext('2d').getImageData(at(view.x + view.scale * x), at(view.y), 1, 1).data;
+          return r > 200 && g < 60 && b > 100;
+        };
+        const seen = [];
+        for (const on of [true, false]) {
+          $('show-below').click();
+          await show(1);
+          shown.ends = false;
+          draw();
+          seen.push([20, 60].map(pink));
+        }
+        return seen;";
+    let Some(answer) = ask(&page(&plan, &profile), script) else { return };
+    assert_eq!(answer, serde_json::json!([[false, true], [false, false]]));
 }
