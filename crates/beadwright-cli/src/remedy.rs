@@ -18,7 +18,7 @@ pub(crate) fn words(profile: &Profile) -> Words {
 /// Layers that are not level begin where their chart does.
 fn of_charted(kind: &str) -> Option<&'static str> {
     match kind {
-        "high-start" | "nothing-below" | "in-the-air" | "hanging-island" | "overhang" => {
+        "high-start" | "nothing-below" | "in-the-air" | "over-unwelded" | "hanging-island" | "overhang" => {
             Some("--bodies divides the part into bodies that each have metal below.")
         }
         other => of_level(other),
@@ -33,6 +33,7 @@ fn of_level(kind: &str) -> Option<&'static str> {
         }
         "high-start" | "nothing-below" => "--from-z MM begins higher up, --lay-flat turns the part.",
         "in-the-air" => "--orient and --lay-flat turn the part, --from-z MM begins higher up.",
+        "over-unwelded" => "--scale enlarges the part, --orient and --lay-flat turn it.",
         "hanging-island" | "overhang" => "--orient turns the part.",
         "bare" | "void" => "beadwright compare shows what other strategies leave.",
         "built-height" => "beadwright adapt corrects the layers that follow a scan.",

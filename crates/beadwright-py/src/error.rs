@@ -65,7 +65,7 @@ pub(crate) fn words(profile: &Profile) -> Words {
 /// Layers that are not level begin where their chart does.
 fn of_charted(kind: &str) -> Option<&'static str> {
     match kind {
-        "high-start" | "nothing-below" | "in-the-air" | "hanging-island" | "overhang" => {
+        "high-start" | "nothing-below" | "in-the-air" | "over-unwelded" | "hanging-island" | "overhang" => {
             Some("layers.bodies divides the part into bodies that each have metal below.")
         }
         other => of_level(other),
@@ -76,6 +76,7 @@ fn of_level(kind: &str) -> Option<&'static str> {
     Some(match kind {
         "high-start" | "nothing-below" => "Part.above(z) begins higher up, stand=\"flat\" turns the part.",
         "in-the-air" => "stand=\"orient\" and \"flat\" turn the part, Part.above(z) begins higher up.",
+        "over-unwelded" => "Part.open(scale=…) enlarges the part, stand=\"orient\" and \"flat\" turn it.",
         "hanging-island" | "overhang" => "stand=\"orient\" turns the part.",
         "bare" | "void" => "compare() shows what other strategies leave.",
         "reach" => "suggest=True looks for a better place.",

@@ -43,6 +43,8 @@ pub enum WarningKind {
     /// Less than half of a pass lies over metal, or a long stretch of it is clear of any; the size is the length without
     /// metal below, mm.
     InTheAir,
+    /// The same over a place of the layer below that is too narrow for a bead; the size is the length without metal below, mm.
+    OverUnwelded,
     /// A small new island, or a stub of a bead, hangs in the air and was left out; the size is its area, mm².
     HangingIsland,
     /// A layer is thinner or thicker than its window allows; the size is by how much, mm.
@@ -77,7 +79,15 @@ pub const SLIVER_MM: f64 = 0.05;
 impl WarningKind {
     /// Whether a program with this fault is only written if somebody insists.
     pub fn forbids(self) -> bool {
-        matches!(self, Self::Unsound | Self::HighStart | Self::NothingBelow | Self::InTheAir | Self::LayerThickness)
+        matches!(
+            self,
+            Self::Unsound
+                | Self::HighStart
+                | Self::NothingBelow
+                | Self::InTheAir
+                | Self::OverUnwelded
+                | Self::LayerThickness
+        )
     }
 
     /// How much a warning of this kind matters.
@@ -234,10 +244,12 @@ impl WarningSummary {
                 "{layers}: {} in which passes leave the part or cross each other {place}.",
                 times("island", "islands")
             ),
-            WarningKind::HighStart => format!(
-                "{layers}: the layers below have no room for a bead; the first would be laid {size:.2} mm above the plate \
-                 {place}."
-            ),
+            WarningKind::HighStart => {
+                let base = if self.at.is_some() { "what its first layer should lie on" } else { "the plate" };
+                format!(
+                    "{layers}: the layers below have no room for a bead; the first would be laid {size:.2} mm above {base} {place}."
+                )
+            }
             WarningKind::NothingBelow => {
                 format!("{layers}: no bead lies below; these would be laid {size:.2} mm above the last one {place}.")
             }
@@ -247,6 +259,11 @@ impl WarningSummary {
             WarningKind::InTheAir => format!(
                 "{layers}: {} passes hang over nothing, for {total:.1} mm in all, the longest for {size:.1} mm {place}.",
                 self.count
+            ),
+            WarningKind::OverUnwelded => format!(
+                "{layers}: {} above places too narrow for a bead, which hold no metal, {total:.1} mm in all, the longest for \
+                 {size:.1} mm {place}.",
+                times("pass lies", "passes lie")
             ),
             WarningKind::HangingIsland => format!(
                 "{layers}: {} with nothing below left out, {total:.1} mm² in all, the largest {size:.1} mm² {place}.",
@@ -258,7 +275,7 @@ impl WarningSummary {
             ),
             WarningKind::Overhang => format!(
                 "{layers}: places that reach farther beyond the layer below than check.max_overhang, {total:.1} mm² in all, \
-                 the largest {size:.1} mm² {place}. There is nothing to weld on."
+                 the largest {size:.1} mm² {place}. Beads there have none below."
             ),
             WarningKind::ShortArc => format!(
                 "{layers}: {} over before the arc is steady (process.arc_start_delay), the longest {size:.1} mm {place}.",

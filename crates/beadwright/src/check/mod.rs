@@ -81,7 +81,7 @@ pub const CHECKS: [Check; 26] = [
 
 /// Checks whose findings the plan warns of by itself.
 const ALSO_WARNED: [(&Check, &[WarningKind]); 3] = [
-    (&overhang::CHECK, &[WarningKind::Overhang, WarningKind::InTheAir]),
+    (&overhang::CHECK, &[WarningKind::Overhang, WarningKind::InTheAir, WarningKind::OverUnwelded]),
     (&layers::CHECK, &[WarningKind::EmptyLayer, WarningKind::HighStart, WarningKind::NothingBelow]),
     (&short_arc::CHECK, &[WarningKind::ShortArc]),
 ];

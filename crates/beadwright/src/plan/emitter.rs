@@ -176,7 +176,9 @@ impl<S: Sink> Emitter<'_, S> {
                 let kind = if self.metrics.passes == 0 { WarningKind::HighStart } else { WarningKind::NothingBelow };
                 doubt(kind, first.start().unwrap_or_default().truncate(), gap);
                 // It says the same of the whole layer.
-                layer.warnings.retain(|warning| warning.kind != WarningKind::InTheAir);
+                layer
+                    .warnings
+                    .retain(|warning| !matches!(warning.kind, WarningKind::InTheAir | WarningKind::OverUnwelded));
             } else if !below.is_empty() {
                 let (reach, width) = (limits.max_overhang * profile.bead.width, profile.bead.width);
                 if let Some((area, place)) = overhang(&below, &layer.islands, reach, width) {

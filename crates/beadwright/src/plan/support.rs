@@ -143,6 +143,12 @@ impl Support {
         self.left_out.contains(island)
     }
 
+    /// Whether the part has something at a place of the layer below that was too narrow for a bead.
+    fn is_unwelded(&self, place: DVec2) -> bool {
+        let within = |islands: &[Polygon]| islands.iter().any(|island| island.contains(place));
+        within(&self.islands) && !within(&self.left_out)
+    }
+
     /// Takes out stubs that hang and small new islands whose passes all do, and warns of other passes that hang. Returns the
     /// islands taken out.
     fn take_out(&self, layer: &mut Layer, hanging: &[Option<Hanging>], width: f64) -> Vec<Polygon> {
@@ -172,7 +178,8 @@ impl Support {
                 }
                 None => {
                     if let Some(Hanging { length: size, place }) = *hanging {
-                        let kind = WarningKind::InTheAir;
+                        let kind =
+                            if self.is_unwelded(place) { WarningKind::OverUnwelded } else { WarningKind::InTheAir };
                         layer.warnings.push(Warning { kind, layer: layer.index, place, size });
                     }
                     kept.push(pass);

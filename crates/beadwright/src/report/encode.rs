@@ -13,7 +13,7 @@
 //!
 //! Points (rings, then passes) are Int16 differences from one to the next in units of the resolution, starting at the
 //! lowest corner of the layer, in four planes: low bytes of x, high bytes of x, low bytes of y, high bytes of y. The
-//! rest is JSON: the warnings as `[x, y, text]`.
+//! rest is JSON: the warnings as `[x, y, text, serious]`.
 //!
 //! The [height field](map) of a layer is base64 of a deflated body: lowest x and y, pixel, pixels in x and y (f64,
 //! little-endian), then one byte per pixel as in [`Picture`].
@@ -172,7 +172,7 @@ fn deflate(head: Vec<u8>, body: &[u8]) -> Vec<u8> {
 fn warnings(warnings: &[Warning]) -> serde_json::Value {
     let round = |v: f64| (v * 100.0).round() / 100.0;
     let first = warnings.iter().take(MOST_WARNINGS);
-    first.map(|w| serde_json::json!([round(w.place.x), round(w.place.y), short(w)])).collect()
+    first.map(|w| serde_json::json!([round(w.place.x), round(w.place.y), short(w), w.kind.forbids()])).collect()
 }
 
 /// A warning in a few words, without its place.
@@ -193,6 +193,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::HighStart => format!("first bead {size:.2} mm above the plate"),
         WarningKind::NothingBelow => format!("nothing below, {size:.2} mm above the last bead"),
         WarningKind::InTheAir => format!("{size:.1} mm of a pass over nothing"),
+        WarningKind::OverUnwelded => format!("{size:.1} mm of a pass above what is too narrow for a bead"),
         WarningKind::HangingIsland => format!("hanging island of {size:.1} mm² left out"),
         WarningKind::LayerThickness => format!("{size:.2} mm too thin or too thick"),
         WarningKind::Overhang => format!("{size:.1} mm² overhang the layer below"),

@@ -166,3 +166,16 @@ fn a_tip_above_a_neck_is_left_out() {
         assert_eq!(plan.summary.forbidden, [below.sentence()], "what hangs is reported once");
     }
 }
+
+/// Above a wall too thin for a bead, what refuses the plan is the wall, not air: the remedy is another one.
+#[test]
+fn a_plate_above_a_wall_too_thin_to_weld_says_so() {
+    let wall = [(80.0, 80.4), (0.0, 60.0), (0.0, 12.0)];
+    let plate = [(77.0, 83.4), (0.0, 60.0), (12.0, 16.0)];
+    for degrees in [0.0, 17.0] {
+        let plan = planned(&blocks(&[BASE, wall, plate], degrees), "loop");
+        let over = warning(&plan, WarningKind::OverUnwelded).unwrap();
+        assert_eq!(plan.summary.forbidden, [over.sentence()], "at {degrees}°");
+        assert!(over.total > 45.0 && over.total < 65.0, "{} of 60 mm", over.total);
+    }
+}

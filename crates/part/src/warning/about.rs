@@ -15,7 +15,7 @@ pub struct About {
 
 impl WarningKind {
     /// All kinds, in their order.
-    pub const ALL: [Self; 26] = [
+    pub const ALL: [Self; 27] = [
         Self::GapClosed,
         Self::OpenContourDropped,
         Self::ContoursUnited,
@@ -29,6 +29,7 @@ impl WarningKind {
         Self::HighStart,
         Self::NothingBelow,
         Self::InTheAir,
+        Self::OverUnwelded,
         Self::HangingIsland,
         Self::LayerThickness,
         Self::Overhang,
@@ -108,6 +109,11 @@ impl WarningKind {
                 "in-the-air",
                 "a pass has no bead below for more than half of its length, or for two bead widths in a row",
                 "turn the part, begin above the place, or add metal below that is machined off",
+            ),
+            Self::OverUnwelded => (
+                "over-unwelded",
+                "what lies below a pass is too narrow for a bead and was left out, so the pass would be laid in the air",
+                "use a narrower bead (bead.width), enlarge the part, or turn it",
             ),
             Self::HangingIsland => (
                 "hanging-island",
