@@ -44,9 +44,9 @@ impl Beside {
         Self { torch: profile.torch, finished: Vec::new(), close: Vec::new() }
     }
 
-    /// Takes a body that is finished.
-    pub(super) fn finish(&mut self, body: &str, mesh: &Mesh) {
-        self.finished.push((body.to_owned(), surface_points(mesh)));
+    /// Takes metal that is finished; `what` it is, as messages say it.
+    pub(super) fn finish(&mut self, what: &str, mesh: &Mesh) {
+        self.finished.push((what.to_owned(), surface_points(mesh)));
     }
 
     /// That nothing was looked at.
@@ -62,7 +62,7 @@ impl Beside {
             let Close { welded, finished, tip, metal, needs, has, travels } = close;
             let does = if *travels { "travels over" } else { "welds" };
             format!(
-                "The torch would hit {finished} while it {does} {welded} at x {:.1} y {:.1} z {:.1} mm: near x {:.1} y {:.1} z {:.1} mm it \
+                "The torch would hit {finished} while it {does} \"{welded}\" at x {:.1} y {:.1} z {:.1} mm: near x {:.1} y {:.1} z {:.1} mm it \
                  needs {needs:.1} mm beside its axis and has {has:.1} mm (section [torch]). Weld the bodies in another order, or part \
                  them elsewhere (layers.bodies).",
                 tip.x, tip.y, tip.z, metal.x, metal.y, metal.z

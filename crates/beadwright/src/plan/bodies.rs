@@ -77,13 +77,20 @@ pub(super) fn bodies_into<S: Sink + Send>(
             Start { warmth: &ready.warmth, footing, heat: heat.as_mut().map(|heat| heat.before(k, &ready.warmth)) };
         let summary = ready.plan(start, task, &mut watch)?;
         row.finish(&own.body.name, ready.slabs.len(), &summary);
-        beside.finish(&own.body.name, &own.mesh);
+        beside.finish(&format!("\"{}\"", own.body.name), &own.mesh);
     }
     let mut summary = row.summary(&format!("The part is welded as {} bodies, one after another", owned.len()));
-    let volume = summary.metrics.mesh_volume_mm3;
-    summary.notes.extend(missing(mesh, volume).filter(|_| !profile.layers.bodies.is_empty()));
     summary.notes.extend(beside.note());
+    summary.notes.extend(owned.first().filter(|_| onto.is_none()).and_then(Own::on_what_is_there));
     summary.forbidden.extend(beside.sentences());
+    let twice = welded_twice(mesh, &owned);
+    let missing = missing(mesh, summary.metrics.mesh_volume_mm3);
+    if let Some(missing) = missing.filter(|_| !profile.layers.bodies.is_empty() && twice.is_empty()) {
+        // Where passes lie in the air, it is the likely reason.
+        let to = if summary.forbidden.is_empty() { &mut summary.notes } else { &mut summary.forbidden };
+        to.insert(0, missing);
+    }
+    summary.forbidden.splice(0..0, twice);
     Ok(summary)
 }
 
@@ -110,7 +117,45 @@ fn missing(mesh: &Mesh, bodies: Option<f64>) -> Option<String> {
     })
 }
 
+/// Which bodies share metal that both would weld, as sentences. Around an axis and along a guide the mesh of a body holds what lies
+/// below its first layer, too, and solids may overlap.
+fn welded_twice(whole: &Mesh, bodies: &[Own<'_>]) -> Vec<String> {
+    let by_planes = |own: &&Own<'_>| matches!(own.body.chart, Chart::Plane(_)) && own.body.solids.is_empty();
+    let bodies: Vec<&Own<'_>> = bodies.iter().filter(by_planes).collect();
+    let pairs = bodies.iter().enumerate().flat_map(|(k, own)| bodies[k + 1..].iter().map(move |other| (own, other)));
+    let shared = |(own, other): (&&Own<'_>, &&Own<'_>)| {
+        let common = other.body.of_mesh(&own.mesh);
+        let ((low, high), volume) = (common.bounds(), common.volume());
+        let at = (low + high) / 2.0;
+        (volume > MISSING * whole.volume()).then(|| {
+            format!(
+                "Bodies \"{}\" and \"{}\" have {:.1} cm³ in common, around x {:.1} y {:.1} z {:.1} mm, which would be welded twice, the \
+                 torch in finished metal the second time. Part them by planes (within).",
+                own.body.name,
+                other.body.name,
+                volume / 1e3,
+                at.x,
+                at.y,
+                at.z
+            )
+        })
+    };
+    pairs.filter_map(shared).collect()
+}
+
 impl Own<'_> {
+    /// That the first body leans on something that the plan cannot know.
+    fn on_what_is_there(&self) -> Option<String> {
+        let leans = matches!(self.body.chart, Chart::Plane(_)) && !self.body.chart.is_level() && !self.body.on_stock;
+        leans.then(|| {
+            format!(
+                "The first layer of \"{}\" is not level, so it cannot lie on the plate: it must lie on metal that is there already (on_stock = \
+                 true says that it does; --onto says what it is).",
+                self.body.name
+            )
+        })
+    }
+
     fn part(&self) -> PartRef<'_> {
         PartRef::Mesh { mesh: &self.mesh, milled: None, onto: None }
     }

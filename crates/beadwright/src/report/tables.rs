@@ -5,7 +5,7 @@ use super::words::hinted;
 use crate::bead::Overlap;
 use crate::deposit::Figures;
 use crate::fill::{ContourOrder, LineEnds, RasterSpacing, StrategyName};
-use crate::finding::Finding;
+use crate::finding::{Finding, Severity};
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
 use crate::number::hours;
@@ -59,6 +59,11 @@ fn empty(header: &Header, m: &Metrics) -> String {
 pub(super) fn state(summary: &Summary, findings: &[Finding]) -> String {
     if !summary.forbidden.is_empty() {
         return "<a class=\"badge bad\" href=\"#warnings\">Do not start</a>".to_owned();
+    }
+    let serious = findings.iter().filter(|finding| finding.severity == Severity::Serious).count();
+    if serious > 0 {
+        let found = count(serious, "serious finding", "serious findings");
+        return format!("<a class=\"badge bad\" href=\"#warnings\">{found}</a>");
     }
     match remarks(summary, findings).count() {
         0 => "<a class=\"badge good\" href=\"#warnings\">Nothing was lost</a>".to_owned(),
