@@ -19,8 +19,6 @@ pub(crate) struct Arguments {
 
 /// The curve of a file is followed this closely, mm.
 const CHORD: f64 = 0.05;
-/// Points and lengths are printed with this many places, mm.
-const PLACES: f64 = 1e3;
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let path = &arguments.model.model;
@@ -37,12 +35,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let guide = match ending.as_ref().and_then(|ending| ending.to_str()) {
         Some("csv" | "txt") => {
             as_it_is()?;
-            rounded(&table(path)?).with_context(|| path.display().to_string())?
+            Guide::through(&table(path)?).with_context(|| path.display().to_string())?
         }
         Some("igs" | "iges") => match iges(path)? {
             Some(points) => {
                 as_it_is()?;
-                rounded(&points).with_context(|| path.display().to_string())?
+                Guide::through(&points).with_context(|| path.display().to_string())?
             }
             None => found(arguments)?,
         },
@@ -66,13 +64,7 @@ fn found(arguments: &Arguments) -> anyhow::Result<Guide> {
     let import = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?;
     let guide = middle_line(&import.mesh, &task).with_context(|| arguments.model.model.display().to_string())?;
     bar.finish_and_clear();
-    rounded(guide.points())
-}
-
-fn rounded(points: &[DVec3]) -> anyhow::Result<Guide> {
-    let mut points: Vec<DVec3> = points.iter().map(|p| (p * PLACES).round() / PLACES + DVec3::ZERO).collect();
-    points.dedup();
-    Ok(Guide::new(points, Vec::new())?)
+    Ok(Guide::through(guide.points())?)
 }
 
 /// The curve of an IGES file; none where it holds no curves but surfaces.

@@ -11,6 +11,7 @@ mod compare;
 mod completions;
 mod convert;
 mod deviation;
+mod directions;
 mod example;
 mod export;
 mod file;
@@ -61,6 +62,9 @@ enum Command {
     Plan(plan::Arguments),
     /// Make the preform of a model: the part plus the stock that is milled off afterwards, with weights, hours and prices.
     Preform(preform::Arguments),
+    /// Find directions in which as little as possible of a part overhangs: around a hub, along a bent tube, or in pieces cut by planes;
+    /// written as a file of bodies for `plan --bodies`.
+    Directions(directions::Arguments),
     /// Print the guide curve of a bent part, to which its layers are perpendicular, for plan --chart: found in a bent tube or bar that
     /// stands on one end, or read from a curve (IGES, or a CSV table with the columns x, y, z in mm).
     Guide(guide::Arguments),
@@ -113,6 +117,7 @@ fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Plan(arguments) => parts::run(&arguments),
         Command::Preform(arguments) => preform::run(&arguments),
+        Command::Directions(arguments) => directions::run(&arguments),
         Command::Guide(arguments) => guide::run(&arguments),
         Command::Surface(arguments) => surface::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),

@@ -6,6 +6,7 @@
 //! | [`curve`] | NURBS curves, fits and lengths |
 //! | [`model`] | meshes and curves read from files (STL, 3MF, OBJ, PLY, IGES, SVG), repaired and placed |
 //! | [`slice`](mod@slice) | level slices: islands with holes, or the lines of an open surface |
+//! | [`directions`] | a part divided into pieces with directions of their own |
 //! | [`middle_line`] | the curve in the middle of a bent tube, from its sections |
 //! | [`deviation`] | signed distances of measured points to a mesh |
 //! | [`example`] | parametric example parts |
@@ -16,6 +17,8 @@
 pub mod chart;
 pub mod curve;
 pub mod deviation;
+pub mod directions;
+
 pub mod example;
 pub mod finding;
 pub mod middle_line;

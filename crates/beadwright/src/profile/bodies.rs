@@ -2,6 +2,7 @@
 
 use super::{Predict, Profile};
 use crate::chart::{self, Chart, Plane};
+use crate::directions::{Division, Piece};
 use crate::fill::StrategyName;
 use crate::model::{Mesh, Object, Solids};
 use glam::DVec3;
@@ -131,6 +132,21 @@ impl Body {
             strategy: None,
             predict: None,
         }
+    }
+
+    /// The bodies of a part that is divided ([`directions`](crate::directions)); `name` is that of a part in one piece.
+    pub fn of_division(name: &str, division: &Division) -> Vec<Self> {
+        let name = |k: usize| match (division.pieces.len(), k) {
+            (1, _) => name.to_owned(),
+            (_, 0) => "trunk".to_owned(),
+            (_, k) => format!("branch {k}"),
+        };
+        let body = |(k, piece): (usize, &Piece)| Self {
+            within: piece.within.clone(),
+            on_stock: piece.on_stock,
+            ..Self::of(&name(k), piece.chart.clone())
+        };
+        division.pieces.iter().enumerate().map(body).collect()
     }
 
     /// The text of a file of bodies.

@@ -4,6 +4,7 @@
 use crate::common;
 
 use beadwright::as_built::as_built;
+use beadwright::directions::{Settings, divisions};
 use beadwright::layer::Layer;
 use beadwright::model::{Import, Mesh, Object, Part, RepairReport, solid::Solid};
 use beadwright::plan::{self, Plan, PlanError};
@@ -268,7 +269,10 @@ fn a_torch_that_would_hit_a_finished_body_is_found() {
         planned(&mesh, &bodies(0.0)).unwrap().summary.forbidden
     };
     let close = found(25.0);
-    assert!(close.iter().any(|text| text.starts_with("The torch would hit first while it welds second")), "{close:?}");
+    assert!(
+        close.iter().any(|text| text.starts_with("The torch would hit \"first\" while it welds \"second\"")),
+        "{close:?}"
+    );
     assert_eq!(found(200.0), Vec::<String>::new());
 }
 
@@ -281,8 +285,28 @@ fn what_belongs_to_no_body_or_to_two_is_said() {
     profile.layers.bodies[1].within.clear();
     let (_, whole) = y_tube();
     profile.layers.bodies.push(whole.layers.bodies[2].clone());
-    let notes = planned(&mesh, &profile).unwrap().summary.notes;
-    assert!(notes.iter().any(|note| note.contains("belong to two bodies")), "{notes:?}");
+    let forbidden = planned(&mesh, &profile).unwrap().summary.forbidden;
+    let twice = "Bodies \"right arm\" and \"left arm\" have";
+    assert!(forbidden[0].starts_with(twice) && forbidden[0].contains("welded twice"), "{forbidden:?}");
+}
+
+/// A body that begins below the top of the one before it would drive the torch into finished metal, by however little.
+#[test]
+fn bodies_that_overlap_are_refused_and_those_that_meet_are_not() {
+    let (mesh, mut profile) = y_tube();
+    let bodies = |from: f64| {
+        let text = format!(
+            "[[body]]\nname = \"low\"\nwithin = [\"up=-z,through=0/0/30\"]\n\n[[body]]\nname = \"high\"\nwithin = [\"up=-z,through=0/0/60\"]\n\
+             chart = \"plane:up=z,through=0/0/{from}\"\n"
+        );
+        Body::read(&text).unwrap()
+    };
+    for (from, overlaps) in [(30.0, false), (29.0, true), (20.0, true)] {
+        profile.layers.bodies = bodies(from);
+        let forbidden = planned(&mesh, &profile).unwrap().summary.forbidden;
+        let said = forbidden.iter().any(|text| text.starts_with("Bodies \"low\" and \"high\" have"));
+        assert_eq!(said, overlaps, "from {from} mm: {forbidden:?}");
+    }
 }
 
 #[test]
@@ -432,5 +456,21 @@ fn a_strategy_named_by_a_body_is_kept() {
         let chosen = plan::choice::choose(&part, &with_bodies(&text), false, &Task::new()).unwrap().profile;
         let strategy = |k: usize| chosen.layers.bodies[k].strategy.map(|strategy| strategy.to_string());
         assert_eq!((strategy(0).as_deref(), strategy(1).as_deref()), (Some(expected), Some("wall")));
+    }
+}
+
+/// From a mesh alone: a hub with blades and a bent tube are planned in the directions that are found, as by the bodies that come with
+/// the examples.
+#[test]
+fn directions_that_are_found_are_planned() {
+    for (name, layers) in [("hub", 50), ("elbow", 125)] {
+        let mesh = example::find(name).unwrap().mesh();
+        let settings = Settings { lean: 45.0, tilt: 90.0, bead: 7.0 };
+        let found = divisions(&mesh, settings, &Task::new()).unwrap();
+        let text = Body::write(&Body::of_division(name, &found[0]));
+        let plan = planned(&mesh, &with_bodies(&text)).unwrap();
+        assert_eq!(plan.summary.forbidden, [] as [String; 0], "{name}");
+        assert!(plan.summary.metrics.layers.abs_diff(layers) <= 1, "{name}: {}", plan.summary.metrics.layers);
+        assert!(plan.summary.metrics.coverage() > 0.99, "{name}: {}", plan.summary.metrics.coverage());
     }
 }

@@ -75,6 +75,18 @@ pub enum GuideError {
 }
 
 impl Guide {
+    /// A guide through points with bends as wide as fit; the points are rounded to 0.001 mm, so that they are short as text.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn through(points: &[DVec3]) -> Result<Self, GuideError> {
+        /// Per mm.
+        const PLACES: f64 = 1e3;
+        let mut points: Vec<DVec3> = points.iter().map(|p| (p * PLACES).round() / PLACES + DVec3::ZERO).collect();
+        points.dedup();
+        Self::new(points, Vec::new())
+    }
+
     /// A guide through `points` (mm), whose corners are bent at `radii` (mm): one for all, one for each, or none for the largest
     /// that fit.
     ///

@@ -30,6 +30,12 @@ impl Plane {
         DQuat::from_rotation_arc(DVec3::Z, self.up)
     }
 
+    /// The same, but for what nobody sees, so that its numbers are short.
+    pub(crate) fn rounded(self) -> Self {
+        let to = |v: DVec3, places: f64| (v * places).round() / places + DVec3::ZERO;
+        Self { origin: to(self.origin, 1e3), up: to(self.up, 1e6) }
+    }
+
     /// What of a mesh lies above the plane, closed by a flat face; nothing of one that lies below.
     ///
     /// ```

@@ -1,0 +1,93 @@
+//! `beadwright directions`: which way is up for which part of a model, as a file of bodies for `plan --bodies`.
+
+use crate::{file, model, profile, progress, say};
+use anyhow::Context;
+use beadwright::chart::Chart;
+use beadwright::directions::{Division, Settings, divisions};
+use beadwright::profile::Body;
+use std::io::Write;
+use std::path::PathBuf;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    model: model::Model,
+    /// Largest angle between a wall and the direction in which it is built, degrees.
+    #[arg(long, value_name = "DEG", default_value_t = 45.0, value_parser = parse_lean)]
+    lean: f64,
+    /// Largest angle between a direction and the vertical, degrees: what the positioner can tilt, or the torch can lean.
+    #[arg(long, value_name = "DEG", default_value_t = 90.0, value_parser = parse_tilt)]
+    tilt: f64,
+    /// Which of the divisions to write, from 1.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
+    choice: u64,
+    /// File of bodies to write; standard output if left out.
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    wanted: profile::Wanted,
+}
+
+fn parse_lean(text: &str) -> Result<f64, String> {
+    degrees(text, 5.0..=80.0)
+}
+
+fn parse_tilt(text: &str) -> Result<f64, String> {
+    degrees(text, 5.0..=90.0)
+}
+
+fn degrees(text: &str, range: std::ops::RangeInclusive<f64>) -> Result<f64, String> {
+    let degrees: f64 = text.parse().map_err(|_| "an angle in degrees is expected".to_owned())?;
+    let wrong = || format!("the angle must lie between {} and {} degrees", range.start(), range.end());
+    if range.contains(&degrees) { Ok(degrees) } else { Err(wrong()) }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
+    let profile = profile::load(name, &arguments.wanted.set)?;
+    let (task, bar) = progress::task()?;
+    let import = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?;
+    let settings = Settings { lean: arguments.lean, tilt: arguments.tilt, bead: profile.bead.width };
+    let mut found = divisions(&import.mesh, settings, &task)?;
+    bar.finish_and_clear();
+    let level = found.pop().context("a part has at least one piece")?;
+    let mut out = say::done(arguments.output.is_none());
+    let lean = arguments.lean;
+    writeln!(out, "level layers: {:.1} cm² overhang by more than {lean}°", level.hanging / 100.0)?;
+    for (number, division) in found.iter().enumerate() {
+        writeln!(out, "{}. {}", number + 1, sentence(division))?;
+    }
+    if found.is_empty() {
+        let what = "no other direction spares much of it: the part is planned without --bodies";
+        return Ok(writeln!(out, "{what}.")?);
+    }
+    let Some(division) = found.get(arguments.choice as usize - 1) else {
+        anyhow::bail!("--choice {}: {} divisions were found", arguments.choice, found.len());
+    };
+    let text = Body::write(&Body::of_division(&arguments.model.part(), division));
+    match &arguments.output {
+        Some(path) => {
+            file::write(path, text.as_bytes())?;
+            writeln!(out, "{}: number {}. Plan it with --bodies {0}.", path.display(), arguments.choice)?;
+        }
+        None => write!(std::io::stdout(), "{text}")?,
+    }
+    Ok(())
+}
+
+fn sentence(division: &Division) -> String {
+    let bodies = match &division.pieces[..] {
+        [piece] => match &piece.chart {
+            Chart::Guide(guide) => format!("1 body along its middle line, {:.0} mm long", guide.length()),
+            chart => format!("1 body on {chart}"),
+        },
+        pieces => format!("{} bodies", pieces.len()),
+    };
+    let stock = if division.pieces.iter().any(|piece| piece.on_stock) {
+        ", on metal that is there already (the hub, turned from bar stock)"
+    } else {
+        ""
+    };
+    let Division { hanging, tilt, .. } = division;
+    format!("{bodies}{stock}: {:.1} cm² overhang, layers up to {tilt:.0}° from level", hanging / 100.0)
+}

@@ -1,0 +1,63 @@
+//! A plane between two sets of points (Gilbert's algorithm: the shortest way between their convex hulls).
+
+use crate::chart::Plane;
+use glam::DVec3;
+
+/// Most steps; convex hulls that need more are taken to touch.
+const STEPS: usize = 400;
+/// Steps end when the plane moves by less than this part of the distance.
+const NEAR: f64 = 1e-3;
+/// Hulls nearer than this are not parted, mm.
+const APART: f64 = 0.05;
+
+/// The plane halfway between the convex hulls of two sets, with `upper` above it; none where they meet.
+pub(super) fn between(upper: &[DVec3], lower: &[DVec3]) -> Option<Plane> {
+    let farthest =
+        |points: &[DVec3], way: DVec3| points.iter().copied().max_by(|a, b| way.dot(*a).total_cmp(&way.dot(*b)));
+    // Points of the two hulls; the way between them becomes the shortest.
+    let (mut above, mut below) = (*upper.first()?, *lower.first()?);
+    for _ in 0..STEPS {
+        let way = above - below;
+        if way.length() < APART {
+            return None;
+        }
+        let (next_above, next_below) = (farthest(upper, -way)?, farthest(lower, way)?);
+        let next = next_above - next_below;
+        if way.dot(way - next) <= NEAR * way.length_squared() {
+            let up = way.normalize();
+            let middle = (up.dot(next_above) + up.dot(next_below)) / 2.0;
+            return (up.dot(next) > APART).then_some(Plane { origin: up * middle, up });
+        }
+        // To the point nearest to the other hull on the line to the next ones.
+        let step = next - way;
+        let part = (-way.dot(step) / step.length_squared()).clamp(0.0, 1.0);
+        above += (next_above - above) * part;
+        below += (next_below - below) * part;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corners(low: DVec3, high: DVec3) -> Vec<DVec3> {
+        let pick = |k: usize, axis: usize| if k >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        (0..8).map(|k| DVec3::new(pick(k, 0), pick(k, 1), pick(k, 2))).collect()
+    }
+
+    #[test]
+    fn the_plane_lies_halfway_between_two_boxes() {
+        let lower = corners(DVec3::ZERO, DVec3::splat(10.0));
+        let upper = corners(DVec3::new(14.0, -30.0, 3.0), DVec3::new(20.0, 40.0, 5.0));
+        let plane = between(&upper, &lower).unwrap();
+        assert!(plane.up.distance(DVec3::X) < 1e-3 && (plane.origin.x - 12.0).abs() < 0.01, "{plane:?}");
+    }
+
+    #[test]
+    fn hulls_that_meet_have_no_plane_between_them() {
+        let lower = corners(DVec3::ZERO, DVec3::splat(10.0));
+        let upper = corners(DVec3::splat(9.0), DVec3::splat(12.0));
+        assert!(between(&upper, &lower).is_none());
+    }
+}

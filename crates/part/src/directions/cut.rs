@@ -1,0 +1,85 @@
+//! A plane takes off what lies above it, as pieces with directions of their own.
+
+use super::between::between;
+use super::samples::samples;
+use super::ways::Judge;
+use super::{Piece, State};
+use crate::chart::{Chart, Plane};
+use crate::model::{Mesh, Solids};
+use glam::DVec3;
+
+/// Directions that differ by less than this are the same, °.
+const SAME: f64 = 2.0;
+
+/// What is left below a cut is at least so thick, in bead widths, and has this part of the part's surface.
+const THICK: f64 = 3.0;
+const LEAST: f64 = 0.05;
+
+/// How far a mesh reaches along a direction, mm.
+fn thickness(mesh: &Mesh, along: DVec3) -> f64 {
+    let reach = mesh.vertices.iter().map(|p| along.dot(*p));
+    let (low, high) = reach.fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)));
+    high - low
+}
+
+/// Solids that are built along one direction.
+struct Group {
+    up: DVec3,
+    mesh: Mesh,
+}
+
+/// The division after a cut; none where nothing is cut, or pieces cannot be parted by planes.
+pub(super) fn cut(state: &State, plane: Plane, judge: &Judge) -> Option<State> {
+    let down = Plane { origin: plane.origin, up: -plane.up };
+    let (upper, trunk) = (plane.above(&state.trunk), down.above(&state.trunk));
+    if upper.triangles.is_empty() || trunk.triangles.is_empty() {
+        return None;
+    }
+    let samples = samples(&trunk, judge.size);
+    // What stands on a thin slice of the part stands on nothing.
+    let left: f64 = samples.iter().map(|sample| sample.area).sum();
+    if left < LEAST * judge.surface || thickness(&trunk, plane.up) < THICK * judge.settings.bead {
+        return None;
+    }
+    let (groups, hanging) = groups(&upper, plane, judge);
+    let pieces = pieces(&groups, plane, &state.cuts)?;
+    let hanging = [judge.hanging(&samples, DVec3::Z, judge.table()), state.hanging[1] + hanging];
+    let all: Vec<Piece> = state.pieces.iter().cloned().chain(pieces).collect();
+    let tilted = all.iter().map(Piece::tilt).fold(0.0, f64::max);
+    let cost = hanging.iter().sum::<f64>() + judge.pieces(all.len()) + judge.tilt(tilted);
+    let cuts = state.cuts.iter().copied().chain([down]).collect();
+    Some(State { trunk, samples, cuts, pieces: all, hanging, cost })
+}
+
+/// What was taken off, by direction, and how much of it still overhangs, mm².
+fn groups(upper: &Mesh, plane: Plane, judge: &Judge) -> (Vec<Group>, f64) {
+    let solids = Solids::of(upper);
+    let (mut groups, mut hanging): (Vec<Group>, f64) = (Vec::new(), 0.0);
+    for number in 0..solids.count() {
+        let mesh = solids.mesh(&[number]);
+        let samples = samples(&mesh, judge.size);
+        let best = judge.best(&samples, plane);
+        let up = if best.angle_between(plane.up).to_degrees() < SAME { plane.up } else { best };
+        hanging += judge.hanging(&samples, up, plane);
+        match groups.iter_mut().find(|group| group.up.angle_between(up).to_degrees() < SAME) {
+            Some(group) => group.mesh.add(mesh),
+            None => groups.push(Group { up, mesh }),
+        }
+    }
+    (groups, hanging)
+}
+
+/// The groups as pieces above a plane, each parted from the others by planes.
+fn pieces(groups: &[Group], plane: Plane, cuts: &[Plane]) -> Option<Vec<Piece>> {
+    let piece = |(k, group): (usize, &Group)| {
+        let others = groups.iter().enumerate().filter(|(other, _)| *other != k);
+        let parted = others.map(|(_, other)| between(&group.mesh.vertices, &other.mesh.vertices).map(Plane::rounded));
+        let parted = parted.collect::<Option<Vec<Plane>>>()?;
+        let square = group.up == plane.up;
+        let lowest = group.mesh.vertices.iter().map(|p| group.up.dot(*p)).fold(f64::MAX, f64::min);
+        let first = if square { plane } else { Plane { origin: group.up * lowest, up: group.up } };
+        let within = cuts.iter().copied().chain((!square).then_some(plane)).chain(parted).collect();
+        Some(Piece { chart: Chart::Plane(first.rounded()), within, on_stock: false, volume: group.mesh.volume() })
+    };
+    groups.iter().enumerate().map(piece).collect()
+}

@@ -1,0 +1,243 @@
+//! Which way is up for which part of a model: it is divided by planes into pieces, each of which is built square to a direction of its
+//! own, so that as little as possible overhangs.
+//!
+//! Planes take off what lies above them, from the top down, as clipping planes do in Wu et al. 2018 (*General support-effective
+//! decomposition for multi-directional 3-D printing*, arXiv 1812.00606): a plane is worth as much as the overhang that what is left
+//! loses. What is taken off may be several pieces; each has the direction that suits it, and stands on the cut. The most promising
+//! divisions are followed side by side (a beam search). Only the surface is looked at, so that open and broken models are divided, too.
+//!
+//! | file | what it does |
+//! | --- | --- |
+//! | `around` | blades on a hub: layers around an axis |
+//! | `samples` | the surface as many small pieces |
+//! | `ways` | directions worth trying, and the one that suits a piece best |
+//! | `cut` | a plane takes off what lies above it |
+//! | `between` | a plane between two pieces |
+
+mod around;
+mod between;
+mod cut;
+mod samples;
+mod ways;
+
+use crate::chart::{Chart, Guide, Plane};
+use crate::middle_line::{NoMiddleLine, middle_line};
+use crate::model::Mesh;
+use crate::task::{Cancelled, Task};
+use glam::DVec3;
+use rayon::prelude::*;
+use samples::{Sample, samples};
+use std::sync::Arc;
+use ways::Judge;
+
+/// What may be divided how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// A wall may lean so far from the direction in which it is built, °.
+    pub lean: f64,
+    /// A direction may lie so far from the vertical, °.
+    pub tilt: f64,
+    /// Width of a bead, mm: overhangs of a few beads, and pieces as small, do not count.
+    pub bead: f64,
+}
+
+/// A way to divide a part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Division {
+    /// In the order in which they are built.
+    pub pieces: Vec<Piece>,
+    /// Area that still overhangs, mm².
+    pub hanging: f64,
+    /// Angle between the vertical and the direction that lies farthest from it, °.
+    pub tilt: f64,
+}
+
+/// A piece of a part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// How its layers lie; the first begins at its lowest place.
+    pub chart: Chart,
+    /// It is what of the part lies above these planes, and above its first layer.
+    pub within: Vec<Plane>,
+    /// Whether its first layer lies on metal that is there already, such as a turned hub.
+    pub on_stock: bool,
+    /// mm³; with what is there already.
+    pub volume: f64,
+}
+
+/// Number of divisions that are followed side by side, and of planes that are tried on each.
+const BEAM: usize = 3;
+const TRIES: usize = 80;
+/// No part is cut more often.
+const CUTS: usize = 6;
+/// Directions nearer than this are alike: about 10°.
+const ALIKE: f64 = 0.17;
+/// Number of divisions that are offered.
+const OFFERED: usize = 3;
+/// Divisions are offered that leave no more than this part of what overhangs in level layers.
+const BETTER: f64 = 0.7;
+/// A cut must spare this part of the surface from overhanging.
+const WORTH: f64 = 0.004;
+/// What a piece, and the tilt of a whole part by 90°, cost as overhang, in parts of the surface.
+const PIECE: f64 = 0.002;
+const TILT: f64 = 0.02;
+
+/// A part whose surface is somewhere so many times as far from the middle line as on average branches.
+const BRANCHES: f64 = 2.5;
+/// The ends of a middle line lie so near to their true directions, °.
+const SLACK: f64 = 2.0;
+
+/// A division that may be cut further.
+#[derive(Clone)]
+struct State {
+    /// What is left below the cuts.
+    trunk: Mesh,
+    samples: Vec<Sample>,
+    /// Planes with what is left above them.
+    cuts: Vec<Plane>,
+    /// What was taken off, the highest first.
+    pieces: Vec<Piece>,
+    /// Overhang of the trunk, and of the pieces, mm².
+    hanging: [f64; 2],
+    cost: f64,
+}
+
+/// The best ways to divide a part that stands on the table, the best first; the part as one piece is the last of them.
+///
+/// ```
+/// use bead_part::directions::{Settings, divisions};
+/// use bead_part::{example, task::Task};
+///
+/// // Blades on a hub: layers around the hub's axis.
+/// let hub = example::find("hub").ok_or("no such example")?.mesh();
+/// let found = divisions(&hub, Settings { lean: 45.0, tilt: 90.0, bead: 7.0 }, &Task::new())?;
+/// let chart = found[0].pieces[0].chart.to_string();
+/// assert!(chart.starts_with("cylinder:axis=0/0/1,through=0/0/0,radius=40"), "{chart}");
+/// assert!(found[0].hanging < 0.1 * found.last().ok_or("nothing found")?.hanging);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn divisions(mesh: &Mesh, settings: Settings, task: &Task) -> Result<Vec<Division>, Cancelled> {
+    let judge = Judge::new(mesh, settings);
+    let whole = State::whole(mesh, &judge);
+    let mut offered = tube(mesh, &judge, &whole, task)?;
+    offered.extend(around::around(mesh, &whole, &judge));
+    let (mut open, mut ended) = (vec![whole.clone()], Vec::new());
+    for _ in 0..CUTS {
+        task.check()?;
+        let mut next: Vec<State> = Vec::new();
+        for state in &open {
+            let planes = ways::planes(&state.samples, &judge);
+            let cut: Vec<State> = planes.into_par_iter().filter_map(|plane| cut::cut(state, plane, &judge)).collect();
+            let better = |other: &State| other.cost < state.cost - judge.surface * WORTH;
+            next.extend(cut.into_iter().filter(better));
+        }
+        next.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        next.truncate(BEAM);
+        ended.extend(next.iter().cloned());
+        open = next.into_iter().filter(|state| state.hanging[0] > judge.nothing).collect();
+        if open.is_empty() {
+            break;
+        }
+    }
+    ended.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let better = |state: &State| state.hanging.iter().sum::<f64>() < BETTER * whole.hanging[0];
+    for division in ended.into_iter().filter(better).map(State::division) {
+        if offered.len() < OFFERED && !offered.iter().any(|other| division.is_like(other)) {
+            offered.push(division);
+        }
+    }
+    offered.push(whole.division());
+    Ok(offered)
+}
+
+/// A bent tube or bar as one piece along its middle line.
+fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Vec<Division>, Cancelled> {
+    if whole.hanging[0] <= judge.nothing {
+        return Ok(Vec::new());
+    }
+    let guide = match middle_line(mesh, task) {
+        Ok(guide) => Guide::through(guide.points()).unwrap_or(guide),
+        Err(NoMiddleLine::Cancelled(cancelled)) => return Err(cancelled),
+        Err(_) => return Ok(Vec::new()),
+    };
+    // All of the part lies along it: it ends where the part does, and no branch leaves it.
+    let lies: Vec<Along> = whole.samples.iter().map(|sample| Along::of(guide.points(), sample.place)).collect();
+    let usual = lies.iter().map(|along| along.away).sum::<f64>() / lies.len() as f64;
+    if lies.iter().any(|along| along.away > BRANCHES * usual || along.beyond > usual) {
+        return Ok(Vec::new());
+    }
+    let hangs =
+        |(sample, along): &(&Sample, &Along)| judge.hangs(sample, along.way) && !judge.stands(sample, judge.table());
+    let hanging = whole.samples.iter().zip(&lies).filter(hangs).map(|(sample, _)| sample.area).sum::<f64>() + 0.0;
+    let along = guide.points().windows(2).map(|pair| (pair[1] - pair[0]).normalize_or_zero());
+    let tilt = along.map(ways::lies).fold(0.0, f64::max);
+    let chart = Chart::Guide(Arc::new(guide));
+    let piece = Piece { chart, within: Vec::new(), on_stock: false, volume: mesh.volume() };
+    let fits = tilt <= judge.settings.tilt + SLACK && hanging < BETTER * whole.hanging[0];
+    Ok(Vec::from_iter(fits.then(|| Division { pieces: vec![piece], hanging, tilt })))
+}
+
+/// How a place lies along a line through points.
+struct Along {
+    /// Its distance from the line, mm.
+    away: f64,
+    /// How far it lies beyond one of its ends, mm.
+    beyond: f64,
+    /// Where the line goes there.
+    way: DVec3,
+}
+
+impl Along {
+    fn of(line: &[DVec3], p: DVec3) -> Self {
+        let to = |pair: &[DVec3]| {
+            let (from, along) = (p - pair[0], pair[1] - pair[0]);
+            let part = from.dot(along) / along.length_squared();
+            let beyond = (part - 1.0).max(-part).max(0.0) * along.length();
+            let away = (from - along * part.clamp(0.0, 1.0)).length();
+            Self { away, beyond, way: along.normalize_or_zero() }
+        };
+        let nearest = line.windows(2).map(to).min_by(|a, b| a.away.total_cmp(&b.away));
+        nearest.unwrap_or(Self { away: f64::MAX, beyond: 0.0, way: DVec3::Z })
+    }
+}
+
+impl State {
+    fn whole(mesh: &Mesh, judge: &Judge) -> Self {
+        let samples = samples(mesh, judge.size);
+        let hanging = judge.hanging(&samples, DVec3::Z, judge.table());
+        let trunk = mesh.clone();
+        Self { trunk, samples, cuts: Vec::new(), pieces: Vec::new(), hanging: [hanging, 0.0], cost: hanging }
+    }
+
+    fn division(self) -> Division {
+        let tilt = self.pieces.iter().map(Piece::tilt).fold(0.0, f64::max);
+        let trunk = Piece { chart: Chart::default(), within: self.cuts, on_stock: false, volume: self.trunk.volume() };
+        let pieces = std::iter::once(trunk).chain(self.pieces.into_iter().rev()).collect();
+        Division { pieces, hanging: self.hanging.iter().sum(), tilt }
+    }
+}
+
+impl Division {
+    /// Whether it has as many pieces as another, along the same directions.
+    fn is_like(&self, other: &Self) -> bool {
+        let up = |piece: &Piece| match &piece.chart {
+            Chart::Plane(plane) => plane.up,
+            _ => DVec3::ZERO,
+        };
+        let near = |(a, b): (&Piece, &Piece)| up(a).distance(up(b)) < ALIKE;
+        self.pieces.len() == other.pieces.len() && self.pieces.iter().zip(&other.pieces).all(near)
+    }
+}
+
+impl Piece {
+    /// Angle between its direction and the vertical, °.
+    fn tilt(&self) -> f64 {
+        match &self.chart {
+            Chart::Plane(plane) => ways::lies(plane.up),
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! The surface of a part as places with a direction and an area, small enough that a plane takes or leaves each as a whole.
+
+use crate::model::Mesh;
+use glam::DVec3;
+
+/// A piece of the surface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    /// Its middle, mm.
+    pub(super) place: DVec3,
+    /// Unit vector outwards.
+    pub(super) normal: DVec3,
+    /// Area, mm².
+    pub(super) area: f64,
+}
+
+/// Pieces are divided until their edges are shorter than this part of the part's size.
+const FINE: f64 = 0.03;
+
+/// The surface of a mesh, divided into pieces no longer than a part of `size` (mm).
+pub(super) fn samples(mesh: &Mesh, size: f64) -> Vec<Sample> {
+    let mut samples = Vec::with_capacity(mesh.triangles.len());
+    let mut open: Vec<[DVec3; 3]> = Vec::new();
+    for corners in &mesh.triangles {
+        open.push(corners.map(|corner| mesh.vertices[corner as usize]));
+        while let Some(triangle @ [a, b, c]) = open.pop() {
+            let edges = [a.distance(b), b.distance(c), c.distance(a)];
+            let longest = (0..3).max_by(|i, j| edges[*i].total_cmp(&edges[*j])).unwrap_or_default();
+            if edges[longest] > FINE * size {
+                let [from, to, tip] = [0, 1, 2].map(|k| triangle[(longest + k) % 3]);
+                let middle = (from + to) / 2.0;
+                open.extend([[from, middle, tip], [middle, to, tip]]);
+                continue;
+            }
+            let doubled = (b - a).cross(c - a);
+            if let Some(normal) = doubled.try_normalize() {
+                samples.push(Sample { place: (a + b + c) / 3.0, normal, area: doubled.length() / 2.0 });
+            }
+        }
+    }
+    samples
+}

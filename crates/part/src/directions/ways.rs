@@ -1,0 +1,202 @@
+//! Directions worth trying, and how well they suit a piece.
+
+use super::samples::{Sample, samples};
+use super::{PIECE, Settings, TILT, TRIES, WORTH};
+use crate::chart::Plane;
+use crate::model::Mesh;
+use glam::{DQuat, DVec3};
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Directions spread over the half sphere, so far from one another at most that turning one in small steps finds the best.
+const SPREAD: usize = 160;
+/// The largest flat faces give directions, too; normals whose difference is shorter than this belong to one.
+pub(super) const FACES: usize = 16;
+const SAME_FACE: f64 = 0.02;
+/// Steps in which a direction is turned to a better one, °.
+const TURNS: [f64; 5] = [6.0, 3.0, 1.5, 0.5, 0.1];
+/// Ways to turn it that are tried.
+const TRIED: usize = 12;
+/// Planes along a direction at which a part may be cut.
+const HEIGHTS: usize = 60;
+/// Along each direction, planes are tried that spare these shares of the most that one of them can.
+const SHARES: [f64; 4] = [1.0, 0.9, 0.7, 0.45];
+/// Two planes are alike whose directions differ by less than this, °, and whose heights by less than this part of the size.
+const ALIKE: (f64, f64) = (8.0, 0.04);
+/// How much a leaning face costs that does not overhang, as a part of its area if it faced straight down.
+const LEANS: f64 = 0.05;
+/// Radius of a torch, and its distance from the metal, mm.
+const TORCH: f64 = 25.0;
+/// Overhang of so many squared bead widths is none.
+const NOTHING: f64 = 4.0;
+/// A face lies on the table, or in a cut, if it is so near, in parts of the size, and faces it within the angle of this cosine.
+const ON_IT: f64 = 2e-3;
+const FACES_IT: f64 = 0.99;
+
+/// What directions are judged by.
+pub(super) struct Judge {
+    pub(super) settings: Settings,
+    /// Of the whole part, mm.
+    pub(super) size: f64,
+    /// Of the whole part, mm².
+    pub(super) surface: f64,
+    /// Overhang that does not count, mm².
+    pub(super) nothing: f64,
+    /// Sine of the angle by which walls may lean.
+    steep: f64,
+    pub(super) ways: Vec<DVec3>,
+}
+
+impl Judge {
+    pub(super) fn new(mesh: &Mesh, settings: Settings) -> Self {
+        let size = mesh.size().length();
+        let surface: f64 = samples(mesh, size).iter().map(|sample| sample.area).sum();
+        let steep = settings.lean.to_radians().sin();
+        let least = settings.tilt.to_radians().cos() - 1e-6;
+        let ways = std::iter::once(DVec3::Z).chain(faces(mesh)).chain(spread());
+        let ways = ways.filter(|way| way.z >= least.max(0.0)).collect();
+        Self { settings, size, surface, nothing: NOTHING * settings.bead.powi(2), steep, ways }
+    }
+
+    /// The plane of the table.
+    pub(super) fn table(&self) -> Plane {
+        Plane::default()
+    }
+
+    /// Area that overhangs where layers are square to `up`, or is so near the table that the torch has no room, mm²; what stands on
+    /// `base` does not overhang.
+    pub(super) fn hanging(&self, samples: &[Sample], up: DVec3, base: Plane) -> f64 {
+        let tilt = up.angle_between(DVec3::Z);
+        // A torch square to the layer touches the table below this height: its side is a radius away from its axis.
+        let low = TORCH * (tilt.sin() - tilt.cos());
+        let hangs = |sample: &&Sample| sample.place.z < low || self.hangs(sample, up) && !self.stands(sample, base);
+        samples.iter().filter(hangs).map(|sample| sample.area).sum::<f64>() + 0.0
+    }
+
+    pub(super) fn hangs(&self, sample: &Sample, up: DVec3) -> bool {
+        -sample.normal.dot(up) > self.steep
+    }
+
+    pub(super) fn stands(&self, sample: &Sample, base: Plane) -> bool {
+        let height = base.up.dot(sample.place - base.origin);
+        height.abs() < ON_IT * self.size && -sample.normal.dot(base.up) > FACES_IT
+    }
+
+    /// What is wrong with a direction for a piece on a base, as an area, mm².
+    fn cost(&self, samples: &[Sample], up: DVec3, base: Plane) -> f64 {
+        let leaning = samples.iter().filter(|sample| !self.stands(sample, base));
+        let leaning: f64 = leaning.map(|sample| sample.area * (-sample.normal.dot(up)).max(0.0)).sum();
+        self.hanging(samples, up, base) + LEANS * leaning + self.tilt(lies(up))
+    }
+
+    /// What it costs to build along a direction that lies so far from the vertical, °, as an area, mm².
+    pub(super) fn tilt(&self, degrees: f64) -> f64 {
+        TILT * self.surface * degrees / 90.0
+    }
+
+    /// What the pieces of a division cost, as an area, mm².
+    pub(super) fn pieces(&self, count: usize) -> f64 {
+        PIECE * self.surface * count as f64
+    }
+
+    /// The direction that suits a piece best that stands on a base.
+    pub(super) fn best(&self, samples: &[Sample], base: Plane) -> DVec3 {
+        let least = self.settings.tilt.to_radians().cos() - 1e-6;
+        // It stands on its base.
+        let fits = |up: DVec3| up.z >= least && up.dot(base.up) >= 0.5;
+        let ways = self.ways.iter().copied().chain([base.up]).filter(|up| fits(*up));
+        let judged = ways.map(|up| (self.cost(samples, up, base), up));
+        let (mut cost, mut best) = judged.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::MAX, base.up));
+        for degrees in TURNS {
+            loop {
+                let across = best.any_orthonormal_vector();
+                let turned = (0..TRIED).map(|k| {
+                    let axis = DQuat::from_axis_angle(best, TAU * k as f64 / TRIED as f64) * across;
+                    (DQuat::from_axis_angle(axis, degrees.to_radians()) * best).normalize()
+                });
+                let judged = turned.filter(|up| fits(*up)).map(|up| (self.cost(samples, up, base), up));
+                match judged.min_by(|a, b| a.0.total_cmp(&b.0)) {
+                    Some((other, up)) if other < cost * (1.0 - 1e-6) => (cost, best) = (other, up),
+                    _ => break,
+                }
+            }
+        }
+        best
+    }
+}
+
+/// Angle between a direction and the vertical, °.
+pub(super) fn lies(up: DVec3) -> f64 {
+    up.angle_between(DVec3::Z).to_degrees()
+}
+
+/// Planes that take off most of what overhangs, the best first.
+pub(super) fn planes(samples: &[Sample], judge: &Judge) -> Vec<Plane> {
+    let table = judge.table();
+    let hangs = |sample: &Sample| judge.hangs(sample, DVec3::Z) && !judge.stands(sample, table);
+    let hanging: Vec<bool> = samples.iter().map(hangs).collect();
+    let along = |up: &DVec3| {
+        let heights = samples.iter().map(|sample| up.dot(sample.place));
+        let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), h| (low.min(h), high.max(h)));
+        let step = (high - low) / HEIGHTS as f64;
+        let mut areas = vec![[0.0; 2]; HEIGHTS];
+        for (sample, hanging) in samples.iter().zip(&hanging) {
+            let at = (((up.dot(sample.place) - low) / step) as usize).min(HEIGHTS - 1);
+            areas[at][0] += f64::from(u8::from(*hanging)) * sample.area;
+            areas[at][1] += f64::from(u8::from(judge.hangs(sample, *up))) * sample.area;
+        }
+        let (mut spared, mut left, mut found) = (0.0, 0.0, Vec::new());
+        for k in (1..HEIGHTS).rev() {
+            spared += areas[k][0];
+            left += areas[k][1];
+            let plane = Plane { origin: *up * (low + k as f64 * step), up: *up };
+            found.push((spared - 0.5 * left - judge.tilt(lies(*up)), spared, plane));
+        }
+        let most = found.iter().map(|(worth, ..)| *worth).fold(0.0, f64::max);
+        // For each share of what can be spared the highest plane, which takes off no more than it must.
+        let highest = |share: &f64| found.iter().copied().find(|(worth, ..)| *worth >= share * most);
+        let worthwhile = |(_, spared, _): &(f64, f64, Plane)| *spared > WORTH * judge.surface;
+        SHARES.iter().filter_map(highest).filter(worthwhile).map(|(worth, _, plane)| (worth, plane)).collect::<Vec<_>>()
+    };
+    let mut found: Vec<(f64, Plane)> = judge.ways.par_iter().flat_map_iter(along).collect();
+    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut planes: Vec<Plane> = Vec::new();
+    for (_, plane) in found {
+        let alike = |other: &Plane| {
+            other.up.angle_between(plane.up).to_degrees() < ALIKE.0
+                && (other.up.dot(plane.origin - other.origin)).abs() < ALIKE.1 * judge.size
+        };
+        if planes.len() < TRIES && !planes.iter().any(alike) {
+            planes.push(plane.rounded());
+        }
+    }
+    planes
+}
+
+/// Directions spread evenly over the upper half of the sphere (Fibonacci).
+fn spread() -> impl Iterator<Item = DVec3> {
+    let golden = PI * (3.0 - 5.0_f64.sqrt());
+    (0..SPREAD).map(move |k| {
+        let z = (k as f64 + 0.5) / SPREAD as f64;
+        let (sin, cos) = (golden * k as f64).sin_cos();
+        DVec3::new(cos, sin, 0.0) * (1.0 - z * z).sqrt() + DVec3::Z * z
+    })
+}
+
+/// Normals of the largest flat faces, both ways.
+fn faces(mesh: &Mesh) -> Vec<DVec3> {
+    let mut faces: Vec<(DVec3, f64)> = Vec::new();
+    let mut sums: std::collections::BTreeMap<[i64; 3], (DVec3, f64)> = std::collections::BTreeMap::new();
+    for corners in &mesh.triangles {
+        let [a, b, c] = corners.map(|corner| mesh.vertices[corner as usize]);
+        let doubled = (b - a).cross(c - a);
+        let Some(normal) = doubled.try_normalize() else { continue };
+        let normal = if normal.z < 0.0 { -normal } else { normal };
+        let sum = sums.entry((normal / SAME_FACE).to_array().map(|v| v.round() as i64)).or_default();
+        sum.0 += normal * doubled.length();
+        sum.1 += doubled.length();
+    }
+    faces.extend(sums.into_values());
+    faces.sort_by(|a, b| b.1.total_cmp(&a.1));
+    faces.into_iter().take(FACES).filter_map(|(sum, _)| sum.try_normalize()).collect()
+}
