@@ -10,6 +10,7 @@ use beadwright::Finding;
 use beadwright::check::CHECKS;
 use beadwright::deposit::{Figures, Judgement, figures};
 use beadwright::fill::StrategyName;
+use beadwright::finding::Severity;
 use beadwright::layer::Layer;
 use beadwright::model::wall_curves::WallCurves;
 use beadwright::model::{Import, Mesh, Milled, Object, Part, RepairReport, Units};
@@ -57,6 +58,7 @@ enum Body {
 #[derive(Serialize, Deserialize)]
 struct Found {
     check: usize,
+    severity: Severity,
     count: usize,
     layer: Option<usize>,
     pass: Option<usize>,
@@ -224,14 +226,14 @@ impl Body {
 
 impl Found {
     fn of(finding: Finding) -> Self {
-        let Finding { kind, count, layer, pass, place, size, text, remedy, .. } = finding;
+        let Finding { kind, severity, count, layer, pass, place, size, text, remedy, .. } = finding;
         let check = CHECKS.iter().position(|known| known.name == kind).unwrap_or(CHECKS.len());
-        Self { check, count, layer, pass, place, size, text, remedy }
+        Self { check, severity, count, layer, pass, place, size, text, remedy }
     }
 
     fn finding(self) -> Option<Finding> {
-        let Self { check, count, layer, pass, place, size, text, remedy } = self;
+        let Self { check, severity, count, layer, pass, place, size, text, remedy } = self;
         let check = CHECKS.get(check)?;
-        Some(Finding { count, layer, pass, place, size, remedy, ..Finding::new(check.name, check.severity(), text) })
+        Some(Finding { count, layer, pass, place, size, remedy, ..Finding::new(check.name, severity, text) })
     }
 }

@@ -1,6 +1,7 @@
 //! Parts that end above or below the plan.
 
 use super::{Check, Finding, Subject};
+use crate::finding::Severity;
 
 pub(super) const CHECK: Check = Check {
     name: "built-height",
@@ -16,6 +17,8 @@ pub(super) const CHECK: Check = Check {
 
 /// The fraction of the area that may end elsewhere.
 const ELSEWHERE: f64 = 0.25;
+/// No arc burns where the stick-out is wrong by this part of itself on average.
+const LOST: f64 = 0.5;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let Some((built, last)) = subject.built.zip(subject.layers.last()).filter(|(b, _)| b.within < 1.0 - ELSEWHERE)
@@ -36,5 +39,8 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let found = CHECK.of_layer(last, Some(worst.extend(last.z)), text).sized(built.hollow.max(built.peak));
     let level = subject.profile.is_level();
     let remedy = level.then(|| "Measure the layers as they are built, and correct the rest.".to_owned());
-    vec![Finding { remedy: remedy.or(found.remedy.clone()), ..found }]
+    let stick_out = subject.profile.process.ctwd;
+    let fails = !subject.profile.prints() && built.mean.abs() > LOST * stick_out;
+    let severity = if fails { Severity::Serious } else { found.severity };
+    vec![Finding { severity, remedy: remedy.or(found.remedy.clone()), ..found }]
 }

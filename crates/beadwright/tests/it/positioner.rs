@@ -7,10 +7,11 @@ use crate::readers;
 use beadwright::chart::{Chart, Cylinder, Guide};
 use beadwright::dialect::gcode::GcodePositioner;
 use beadwright::dialect::{self, reading};
+use beadwright::directions::{Settings, divisions};
 use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
-use beadwright::model::RepairReport;
+use beadwright::model::{self, RepairReport};
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan;
 use beadwright::profile::{Body, Profile};
@@ -66,12 +67,16 @@ fn planned_at(name: &'static str, degrees: i32, shift: DVec3) -> (Layers, Profil
         let bodies = profile.layers.bodies.len();
         Arc::new((0..bodies).flat_map(|body| of(body).step_by(1 + of(body).count() / 4)).cloned().collect())
     }));
-    let all = with_all_dialects("cmt-steel-robots");
-    profile.dialects = all.dialects;
+    (layers, in_all_dialects(profile))
+}
+
+/// A profile with sections for all dialects.
+fn in_all_dialects(mut profile: Profile) -> Profile {
+    profile.dialects = with_all_dialects("cmt-steel-robots").dialects;
     profile.dialects.krl.as_mut().unwrap().max_megabytes = 1000.0;
     profile.dialects.rapid.as_mut().unwrap().speed_step = 0.001;
     profile.dialects.fanuc.as_mut().unwrap().table_group = Some(2);
-    (layers, profile)
+    profile
 }
 
 /// A chart turned and shifted with its part.
@@ -152,31 +157,34 @@ fn cases() -> [(&'static str, Positioner, f64); 8] {
 fn the_wire_hangs_straight_down_on_the_planned_path() {
     for (name, positioner, allowed) in cases() {
         let (layers, plain) = planned(name);
-        let mut turned = plain.clone();
-        turned.program.positioner = Some(positioner.clone());
-        for post in ["krl", "rapid", "fanuc"] {
-            let case = format!("{name} {post} {:?}", positioner.turning);
-            let (by_torch, by_part) = (read(post, &layers, &plain), read(post, &layers, &turned));
-            same_path(&case, &by_torch.welds, &by_part.welds);
-            let worst = by_part.welds.iter().map(|weld| off_plumb(weld, &positioner)).fold(0.0, f64::max);
-            assert!(worst <= allowed, "{case}: {worst}°");
-            for (weld, other) in by_part.welds.iter().zip(&by_torch.welds) {
-                // The wire stands on the part as it did.
-                let along = weld.tools.iter().zip(&other.tools);
-                let off =
-                    along.map(|(a, b)| (*a * DVec3::Z).angle_between(*b * DVec3::Z).to_degrees()).fold(0.0, f64::max);
-                assert!(off < 0.05, "{case}: {off}°");
-                let within = |axes: &[Option<f64>; 2]| {
-                    positioner
-                        .axes
-                        .iter()
-                        .zip(axes)
-                        .all(|(axis, at)| at.is_some_and(|at| (axis.limits[0]..=axis.limits[1]).contains(&at)))
-                };
-                assert!(weld.axes.iter().all(within), "{case}");
-                if positioner.turning == Turning::Index {
-                    assert!(weld.axes.iter().all(|axes| *axes == weld.axes[0]), "{case}: it turns under the arc");
-                }
+        robots_weld_it(name, &layers, &plain, &positioner, allowed);
+    }
+}
+
+/// Every robot that turns the part welds the path that it welds with the part held still, the wire as it stood on the part, straight down
+/// within some degrees, and the axes within their limits.
+fn robots_weld_it(name: &str, layers: &[Layer], plain: &Profile, positioner: &Positioner, allowed: f64) {
+    let mut turned = plain.clone();
+    turned.program.positioner = Some(positioner.clone());
+    for post in ["krl", "rapid", "fanuc"] {
+        let case = format!("{name} {post} {:?}", positioner.turning);
+        let (by_torch, by_part) = (read(post, layers, plain), read(post, layers, &turned));
+        same_path(&case, &by_torch.welds, &by_part.welds);
+        let worst = by_part.welds.iter().map(|weld| off_plumb(weld, positioner)).fold(0.0, f64::max);
+        println!("{case}: {} welds, the wire is off plumb by {worst:.4}°", by_part.welds.len());
+        assert!(worst <= allowed, "{case}: {worst}°");
+        for (weld, other) in by_part.welds.iter().zip(&by_torch.welds) {
+            // The wire stands on the part as it did.
+            let along = weld.tools.iter().zip(&other.tools);
+            let off = along.map(|(a, b)| (*a * DVec3::Z).angle_between(*b * DVec3::Z).to_degrees()).fold(0.0, f64::max);
+            assert!(off < 0.05, "{case}: {off}°");
+            let within = |axes: &[Option<f64>; 2]| {
+                let mut each = positioner.axes.iter().zip(axes);
+                each.all(|(axis, at)| at.is_some_and(|at| (axis.limits[0]..=axis.limits[1]).contains(&at)))
+            };
+            assert!(weld.axes.iter().all(within), "{case}");
+            if positioner.turning == Turning::Index {
+                assert!(weld.axes.iter().all(|axes| *axes == weld.axes[0]), "{case}: it turns under the arc");
             }
         }
     }
@@ -218,45 +226,80 @@ fn machines() -> Vec<(&'static str, Positioner, &'static [&'static str], f64)> {
 fn a_torch_that_cannot_turn_welds_the_planned_path_on_a_part_that_does() {
     for (name, positioner, words, allowed) in machines() {
         let (layers, plain) = planned(name);
-        let case = format!("{name} {words:?} {:?}", positioner.turning);
-        let turned = machine(&plain, &positioner, words);
-        let files = dialect::write("gcode", &layers, &turned.job("demo")).unwrap();
-        let text = files.into_values().next().unwrap();
-        let mut welds = readers::gcode::run(&text, 3, 5).welds;
-        let by_torch = read("krl", &layers, &plain).welds;
-        // From the machine, with all axes at 0, to the part.
-        let lies = DQuat::from_rotation_arc(DVec3::Z, DVec3::from(positioner.up));
-        for weld in &mut welds {
-            weld.points.iter_mut().for_each(|at| *at = (lies * DVec3::from_array(*at)).to_array());
-        }
-        same_path(&case, &by_torch, &welds);
-        let leans = welds.iter().zip(&by_torch).flat_map(|(weld, other)| {
-            let tools = weld.tools.iter().zip(&other.tools);
-            tools.map(|(a, b)| (lies * (*a * DVec3::Z)).angle_between(*b * DVec3::Z).to_degrees())
-        });
-        let worst = leans.fold(0.0, f64::max);
-        assert!(worst <= allowed, "{case}: the wire leans by {worst}° on the part");
-        // The path is a program's own reading of it, too.
-        let program = dialect::read(&text, &mut |_| None, &reading::Options::default()).unwrap();
-        let along = |points: &[DVec3]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
-        let own: f64 = program.layers().iter().flat_map(|layer| &layer.passes).map(|pass| along(&pass.points)).sum();
-        let length: f64 = welds.iter().flat_map(|weld| weld.points.windows(2)).map(|p| distance(p[0], p[1])).sum();
-        assert!((own / length - 1.0).abs() < 1e-3, "{case}: {own} mm read, {length} mm welded");
-        assert_eq!(program.notes, Vec::<String>::new(), "{case}");
-        // In the words of Siemens it says the same.
-        let mut siemens = turned.clone();
-        let own = siemens.dialects.gcode.as_mut().unwrap().positioner.as_mut().unwrap();
-        own.axes.iter_mut().for_each(|axis| axis.push('='));
-        (own.tcp_on[0], own.tcp_off[0]) = ("TRAORI".to_owned(), "TRAFOOF".to_owned());
-        let other = dialect::write("gcode", &layers, &siemens.job("demo")).unwrap().into_values().next().unwrap();
-        let again = dialect::read(&other, &mut |_| None, &reading::Options::default()).unwrap();
-        assert_eq!(again.notes, Vec::<String>::new(), "{case}");
-        for (layer, other) in program.layers().iter().zip(again.layers()) {
-            assert_eq!(*layer, other, "{case}");
-        }
-        let translated = other.replace("=", "").replace("TRAORI", "M428").replace("TRAFOOF", "M429");
-        assert_eq!(translated, text.replace("=", ""), "{case}");
+        a_machine_welds_it(name, &layers, &plain, (&positioner, words), allowed);
     }
+}
+
+/// The same of a machine with these words for its axes, in the words of LinuxCNC and of Siemens.
+fn a_machine_welds_it(
+    name: &str,
+    layers: &[Layer],
+    plain: &Profile,
+    (positioner, words): (&Positioner, &[&str]),
+    allowed: f64,
+) {
+    let case = format!("{name} {words:?} {:?}", positioner.turning);
+    let turned = machine(plain, positioner, words);
+    let files = dialect::write("gcode", layers, &turned.job("demo")).unwrap();
+    let text = files.into_values().next().unwrap();
+    let mut welds = readers::gcode::run(&text, 3, 5).welds;
+    let by_torch = read("krl", layers, plain).welds;
+    // From the machine, with all axes at 0, to the part.
+    let lies = DQuat::from_rotation_arc(DVec3::Z, DVec3::from(positioner.up));
+    for weld in &mut welds {
+        weld.points.iter_mut().for_each(|at| *at = (lies * DVec3::from_array(*at)).to_array());
+    }
+    same_path(&case, &by_torch, &welds);
+    let leans = welds.iter().zip(&by_torch).flat_map(|(weld, other)| {
+        let tools = weld.tools.iter().zip(&other.tools);
+        tools.map(|(a, b)| (lies * (*a * DVec3::Z)).angle_between(*b * DVec3::Z).to_degrees())
+    });
+    let worst = leans.fold(0.0, f64::max);
+    assert!(worst <= allowed, "{case}: the wire leans by {worst}° on the part");
+    // The path is a program's own reading of it, too.
+    let program = dialect::read(&text, &mut |_| None, &reading::Options::default()).unwrap();
+    let along = |points: &[DVec3]| points.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
+    let own: f64 = program.layers().iter().flat_map(|layer| &layer.passes).map(|pass| along(&pass.points)).sum();
+    let length: f64 = welds.iter().flat_map(|weld| weld.points.windows(2)).map(|p| distance(p[0], p[1])).sum();
+    assert!((own / length - 1.0).abs() < 1e-3, "{case}: {own} mm read, {length} mm welded");
+    assert_eq!(program.notes, Vec::<String>::new(), "{case}");
+    // In the words of Siemens it says the same.
+    let mut siemens = turned.clone();
+    let own = siemens.dialects.gcode.as_mut().unwrap().positioner.as_mut().unwrap();
+    own.axes.iter_mut().for_each(|axis| axis.push('='));
+    (own.tcp_on[0], own.tcp_off[0]) = ("TRAORI".to_owned(), "TRAFOOF".to_owned());
+    let other = dialect::write("gcode", layers, &siemens.job("demo")).unwrap().into_values().next().unwrap();
+    let again = dialect::read(&other, &mut |_| None, &reading::Options::default()).unwrap();
+    assert_eq!(again.notes, Vec::<String>::new(), "{case}");
+    for (layer, other) in program.layers().iter().zip(again.layers()) {
+        assert_eq!(*layer, other, "{case}");
+    }
+    let translated = other.replace("=", "").replace("TRAORI", "M428").replace("TRAFOOF", "M429");
+    assert_eq!(translated, text.replace("=", ""), "{case}");
+}
+
+/// A foreign propeller, whose hub is found: its blades are welded around the hub by all that can.
+#[test]
+#[cfg_attr(no_models, ignore = "no shared models")]
+fn a_propeller_from_elsewhere_is_welded_around_its_hub() {
+    let mut mesh = model::import(&common::model("propeller_on_hub.stl"), &Task::new()).unwrap().mesh;
+    mesh.place(4.0, DVec3::ZERO);
+    let mut profile = profile("cmt-al2319-kuka");
+    let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
+    let found = divisions(&mesh, settings, &Task::new()).unwrap();
+    // The hub lies along x; its axis becomes that of the chuck and of the machine.
+    let Chart::Cylinder(hub) = &found[0].pieces[0].chart else { panic!("{:?}", found[0]) };
+    assert!(hub.axis.abs().distance(DVec3::X) < 1e-3, "{}", hub.axis);
+    mesh.vertices.iter_mut().for_each(|p| *p -= hub.through);
+    profile.layers.bodies = Body::of_division("propeller", &found[0]);
+    profile.layers.bodies[0].chart = Chart::Cylinder(Cylinder { through: DVec3::ZERO, ..hub.clone() });
+    let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
+    assert!(plan.layers.iter().map(|layer| layer.passes.len()).sum::<usize>() > 400);
+    let layers: Vec<Layer> = plan.layers.into_iter().step_by(20).collect();
+    let plain = in_all_dialects(profile);
+    let lying = Positioner { turning: Turning::Follow, axes: vec![axis([1.0, 0.0, 0.0], FREE)], up: [0.0, 0.0, 1.0] };
+    robots_weld_it("propeller_on_hub", &layers, &plain, &lying, 0.05);
+    a_machine_welds_it("propeller_on_hub", &layers, &plain, (&lying, &["A"]), 0.05);
 }
 
 /// However the part lies in its own space, beside the axes and turned about z, robots and machines weld what was planned, with the wire
