@@ -7,9 +7,9 @@ use crate::common;
 use beadwright::model::RepairReport;
 use beadwright::pass::Along;
 use beadwright::plan::Plan;
-use beadwright::planar::DVec3;
 use beadwright::profile::Profile;
 use beadwright::report::Report;
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
