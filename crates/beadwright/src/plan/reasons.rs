@@ -69,7 +69,11 @@ pub(super) fn left_over(mesh: &Mesh, slabs: &[Slab], profile: &Profile) -> Optio
     }
     let layers = if slabs.len() == 1 { "its layer ends".to_owned() } else { format!("its {} layers end", slabs.len()) };
     let ends = format!("The part is {top:.2} mm high, but {layers} at {last:.2} mm");
-    Some(if last < top {
+    // Layers of walls are as high as their metal, whatever layers.fit says.
+    let as_set = slabs.iter().all(|slab| (slab.height - profile.layers.height).abs() < 1e-6);
+    Some(if last < top && !as_set {
+        format!("{ends}: the upper {left:.2} mm ({percent:.1} %) are not built.")
+    } else if last < top {
         let even = slice::fitted_slabs(mesh, profile.layers.height, LayerFit::Even);
         let each = even.first().map_or(0.0, |slab| slab.height);
         format!(
