@@ -142,7 +142,7 @@ fn print(out: &mut impl Write, findings: &[Finding]) -> std::io::Result<()> {
         if found.is_empty() {
             continue;
         }
-        let word = check.severity().word();
+        let word = found.iter().map(|f| f.severity).min().unwrap_or(check.severity()).word();
         writeln!(out, "{word}: {} ({}): {}.", check.name, found.len(), check.why)?;
         found.iter().take(PRINTED).try_for_each(|finding| writeln!(out, "  {}", finding.text))?;
         if found.len() > PRINTED {

@@ -50,7 +50,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let settings = Settings { lean: arguments.lean, tilt: arguments.tilt, bead: profile.bead.width };
     let mut found = divisions(&import.mesh, settings, &task)?;
     bar.finish_and_clear();
-    let level = found.pop().context("a part has at least one piece")?;
+    let model = &arguments.model.model;
+    let level = found.pop().with_context(|| model.display().to_string())?;
     let mut out = say::done(arguments.output.is_none());
     let lean = arguments.lean;
     writeln!(out, "level layers: {:.1} cm² overhang by more than {lean}°", level.hanging / 100.0)?;
@@ -58,17 +59,28 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         writeln!(out, "{}. {}", number + 1, sentence(division))?;
     }
     if found.is_empty() {
-        let what = "no other direction spares much of it: the part is planned without --bodies";
-        return Ok(writeln!(out, "{what}.")?);
+        writeln!(out, "1. the same: no other direction spares much of it")?;
+        found.push(level);
+    }
+    if import.repair.open_edges > 0 {
+        writeln!(out, "The surface is open ({} edges); bodies are made of solids.", import.repair.open_edges)?;
     }
     let Some(division) = found.get(arguments.choice as usize - 1) else {
-        anyhow::bail!("--choice {}: {} divisions were found", arguments.choice, found.len());
+        anyhow::bail!("--choice {}: there are {} to choose from", arguments.choice, found.len());
     };
     let text = Body::write(&Body::of_division(&arguments.model.part(), division));
     match &arguments.output {
         Some(path) => {
+            let is_model =
+                |path: &PathBuf| path.canonicalize().is_ok_and(|path| model.canonicalize().is_ok_and(|m| m == path));
+            anyhow::ensure!(
+                !is_model(path),
+                "{}: that is the model; give the bodies a file of their own",
+                path.display()
+            );
             file::write(path, text.as_bytes())?;
-            writeln!(out, "{}: number {}. Plan it with --bodies {0}.", path.display(), arguments.choice)?;
+            let placed = if arguments.model.placing.moves() { ", placed as here" } else { "" };
+            writeln!(out, "{}: number {}. Plan the part with --bodies {0}{placed}.", path.display(), arguments.choice)?;
         }
         None => write!(std::io::stdout(), "{text}")?,
     }
@@ -89,5 +101,5 @@ fn sentence(division: &Division) -> String {
         ""
     };
     let Division { hanging, tilt, .. } = division;
-    format!("{bodies}{stock}: {:.1} cm² overhang, layers up to {tilt:.0}° from level", hanging / 100.0)
+    format!("{bodies}{stock}: {:.1} cm² overhang, layers at up to {tilt:.0}° from level", hanging / 100.0)
 }

@@ -12,7 +12,21 @@ use beadwright::read_back::ReadBackError;
 
 /// What the command offers against the findings of a plan by this profile.
 pub(crate) fn words(profile: &Profile) -> Words {
-    if profile.layers.are_level() { of_level } else { of_charted }
+    match profile.layers.are_level() {
+        true => of_level,
+        false if profile.layers.bodies.is_empty() => of_charted,
+        false => of_bodies,
+    }
+}
+
+/// Bodies are already there: it matters where they are parted.
+fn of_bodies(kind: &str) -> Option<&'static str> {
+    match kind {
+        "high-start" | "nothing-below" | "in-the-air" | "over-unwelded" | "hanging-island" | "overhang" => {
+            Some("Other planes in the file of bodies part them elsewhere.")
+        }
+        other => of_level(other),
+    }
 }
 
 /// Layers that are not level begin where their chart does.

@@ -18,7 +18,6 @@ pub mod chart;
 pub mod curve;
 pub mod deviation;
 pub mod directions;
-
 pub mod example;
 pub mod finding;
 pub mod middle_line;

@@ -43,7 +43,7 @@ pub enum WarningKind {
     /// Less than half of a pass lies over metal, or a long stretch of it is clear of any; the size is the length without
     /// metal below, mm.
     InTheAir,
-    /// The same over a place of the layer below that is too narrow for a bead; the size is the length without metal below, mm.
+    /// The same over a place of the layer below that got no bead; the size is the length without metal below, mm.
     OverUnwelded,
     /// A small new island, or a stub of a bead, hangs in the air and was left out; the size is its area, mm².
     HangingIsland,
@@ -261,8 +261,7 @@ impl WarningSummary {
                 self.count
             ),
             WarningKind::OverUnwelded => format!(
-                "{layers}: {} above places too narrow for a bead, which hold no metal, {total:.1} mm in all, the longest for \
-                 {size:.1} mm {place}.",
+                "{layers}: {} above places of the part that got no bead, {total:.1} mm in all, the longest for {size:.1} mm {place}.",
                 times("pass lies", "passes lie")
             ),
             WarningKind::HangingIsland => format!(

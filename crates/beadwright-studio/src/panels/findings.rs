@@ -52,7 +52,12 @@ fn word(severity: Severity) -> &'static str {
 /// All that one check found.
 fn checked(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, check: &Check, findings: &[Finding], colour: Color32) {
     let found: Vec<&Finding> = findings.iter().filter(|finding| finding.kind == check.name).collect();
-    let title = format!("{} ({}, {})", check.name, found.len(), known.t(word(check.severity())));
+    let title = format!(
+        "{} ({}, {})",
+        check.name,
+        found.len(),
+        known.t(word(found.iter().map(|f| f.severity).min().unwrap_or(check.severity())))
+    );
     let title = CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name);
     let opened = title.default_open(true).show(ui, |ui| {
         for (key, text) in [("why", check.why), ("remedy", check.remedy)] {

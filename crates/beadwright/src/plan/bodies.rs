@@ -13,6 +13,7 @@ use crate::model::{Mesh, PartRef};
 use crate::profile::{Body, Profile};
 use crate::slice::{Slab, Slicer};
 use crate::task::Task;
+use crate::warning::WarningKind;
 use planar::{Polygon, Region};
 use std::borrow::Cow;
 
@@ -84,14 +85,24 @@ pub(super) fn bodies_into<S: Sink + Send>(
     summary.notes.extend(owned.first().filter(|_| onto.is_none()).and_then(Own::on_what_is_there));
     summary.forbidden.extend(beside.sentences());
     let twice = welded_twice(mesh, &owned);
-    let missing = missing(mesh, summary.metrics.mesh_volume_mm3);
-    if let Some(missing) = missing.filter(|_| !profile.layers.bodies.is_empty() && twice.is_empty()) {
+    // What lies below a body on stock is there already.
+    let counts = !profile.layers.bodies.is_empty() && !bodies_on_stock(profile) && twice.is_empty();
+    if let Some(missing) = missing(mesh, summary.metrics.mesh_volume_mm3).filter(|_| counts) {
         // Where passes lie in the air, it is the likely reason.
-        let to = if summary.forbidden.is_empty() { &mut summary.notes } else { &mut summary.forbidden };
+        let hang = summary.warnings.summaries().any(|warning| IN_THE_AIR.contains(&warning.kind));
+        let to = if hang { &mut summary.forbidden } else { &mut summary.notes };
         to.insert(0, missing);
     }
     summary.forbidden.splice(0..0, twice);
     Ok(summary)
+}
+
+/// Warnings of passes with nothing below.
+const IN_THE_AIR: [WarningKind; 4] =
+    [WarningKind::InTheAir, WarningKind::OverUnwelded, WarningKind::NothingBelow, WarningKind::HighStart];
+
+fn bodies_on_stock(profile: &Profile) -> bool {
+    profile.layers.bodies.iter().any(|body| body.on_stock)
 }
 
 /// What messages call an existing part.
@@ -127,10 +138,10 @@ fn welded_twice(whole: &Mesh, bodies: &[Own<'_>]) -> Vec<String> {
         let common = other.body.of_mesh(&own.mesh);
         let ((low, high), volume) = (common.bounds(), common.volume());
         let at = (low + high) / 2.0;
-        (volume > MISSING * whole.volume()).then(|| {
+        (volume > MISSING * whole.volume().abs()).then(|| {
             format!(
-                "Bodies \"{}\" and \"{}\" have {:.1} cm³ in common, around x {:.1} y {:.1} z {:.1} mm, which would be welded twice, the \
-                 torch in finished metal the second time. Part them by planes (within).",
+                "Bodies \"{}\" and \"{}\" have {:.1} cm³ in common, around x {:.1} y {:.1} z {:.1} mm, which would be welded twice; \
+                 the second time, the torch would run into finished metal. Part them by planes (within).",
                 own.body.name,
                 other.body.name,
                 volume / 1e3,
@@ -150,7 +161,7 @@ impl Own<'_> {
         leans.then(|| {
             format!(
                 "The first layer of \"{}\" is not level, so it cannot lie on the plate: it must lie on metal that is there already (on_stock = \
-                 true says that it does; --onto says what it is).",
+                 true says that it does).",
                 self.body.name
             )
         })

@@ -143,7 +143,7 @@ impl Support {
         self.left_out.contains(island)
     }
 
-    /// Whether the part has something at a place of the layer below that was too narrow for a bead.
+    /// Whether the part has something at a place of the layer below that got no bead.
     fn is_unwelded(&self, place: DVec2) -> bool {
         let within = |islands: &[Polygon]| islands.iter().any(|island| island.contains(place));
         within(&self.islands) && !within(&self.left_out)

@@ -193,7 +193,7 @@ fn short(warning: &Warning) -> String {
         WarningKind::HighStart => format!("first bead {size:.2} mm above the plate"),
         WarningKind::NothingBelow => format!("nothing below, {size:.2} mm above the last bead"),
         WarningKind::InTheAir => format!("{size:.1} mm of a pass over nothing"),
-        WarningKind::OverUnwelded => format!("{size:.1} mm of a pass above what is too narrow for a bead"),
+        WarningKind::OverUnwelded => format!("{size:.1} mm of a pass above what got no bead"),
         WarningKind::HangingIsland => format!("hanging island of {size:.1} mm² left out"),
         WarningKind::LayerThickness => format!("{size:.2} mm too thin or too thick"),
         WarningKind::Overhang => format!("{size:.1} mm² overhang the layer below"),

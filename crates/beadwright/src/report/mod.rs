@@ -200,11 +200,13 @@ impl Report {
         let times: Vec<[f64; 3]> = self.times.iter().map(|parts| parts.map(|s| (s * 10.0).round() / 10.0)).collect();
         let (times, warmth) = (json!(times), self.warmth());
         let lies = json!(self.lies);
+        // Whether each layer lies on the one before it as the page shows them.
+        let stacked = self.profile.layers.are_level() && self.profile.layers.bodies.len() < 2;
         let surfaces: Vec<_> = self.profile.layers.charts().map(lie::surface).collect();
         let surfaces = json!(surfaces);
         let ranges = json!({ "width": self.widths.ends(), "speed": self.speeds.ends() });
         format!(
-            "{{\"bead\":{bead},\"ranges\":{ranges},\"times\":{times},\"warmth\":{warmth},\"lies\":{lies},\"surfaces\":{surfaces},\"layers\":[{layers}],\"maps\":[{maps}]}}"
+            "{{\"bead\":{bead},\"stacked\":{stacked},\"ranges\":{ranges},\"times\":{times},\"warmth\":{warmth},\"lies\":{lies},\"surfaces\":{surfaces},\"layers\":[{layers}],\"maps\":[{maps}]}}"
         )
     }
 

@@ -57,8 +57,7 @@ async function show(index) {
   slider.value = index;
   const layer = await layerAt(index);
   if (wanted !== index) return;
-  // Layers that are not level are unrolled, each in its own way.
-  const lower = shown.below && index && !data.lies.length ? await layerAt(index - 1) : null;
+  const lower = shown.below && index && data.stacked ? await layerAt(index - 1) : null;
   if (wanted !== index) return;
   Object.assign(shown, { layer, index, lower });
   tellLayer();
@@ -229,7 +228,7 @@ function offer(name, there) {
 async function start() {
   if (!heads.length) return void ($("viewer").hidden = $("clock").hidden = true);
   offer("judged", data.maps.length > 0);
-  offer("level", !data.lies.length && heads.length > 1);
+  offer("stacked", data.stacked && heads.length > 1);
   offer("warmed", data.warmth.length > 0);
   if (data.maps.length) drawKey($("heat-ramp"), part => heatAt(FULL_SCALE * part));
   readColours();

@@ -290,7 +290,7 @@ fn what_belongs_to_no_body_or_to_two_is_said() {
     assert!(forbidden[0].starts_with(twice) && forbidden[0].contains("welded twice"), "{forbidden:?}");
 }
 
-/// A body that begins below the top of the one before it would drive the torch into finished metal, by however little.
+/// A body that begins below the top of the one before it would drive the torch into finished metal.
 #[test]
 fn bodies_that_overlap_are_refused_and_those_that_meet_are_not() {
     let (mesh, mut profile) = y_tube();

@@ -30,7 +30,7 @@ impl Plane {
         DQuat::from_rotation_arc(DVec3::Z, self.up)
     }
 
-    /// The same, but for what nobody sees, so that its numbers are short.
+    /// Rounded to 0.001 mm and 1e-6, so that it is short as text.
     pub(crate) fn rounded(self) -> Self {
         let to = |v: DVec3, places: f64| (v * places).round() / places + DVec3::ZERO;
         Self { origin: to(self.origin, 1e3), up: to(self.up, 1e6) }

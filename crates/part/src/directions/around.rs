@@ -1,34 +1,33 @@
 //! Blades on a hub and flanges on a shaft: layers around an axis, on a hub that is turned from bar stock.
 
 use super::samples::Sample;
-use super::ways::Judge;
+use super::ways::{Judge, lies};
 use super::{Division, Piece, State};
 use crate::chart::{Chart, Cylinder, Side};
-use crate::model::Mesh;
 use glam::{DMat2, DVec2, DVec3};
 
 /// A face is parallel to the axis if the cosine between its normal and the axis is smaller.
 const PARALLEL: f64 = 0.1;
-/// Steps in which the middle is found, each trusting faces that point past it less, from this distance on, in parts of the size.
+/// Steps in which the axis is found. In each, faces whose normals pass it by more than this part of the size count for little.
 const STEPS: usize = 8;
 const PAST: f64 = 0.02;
 /// Faces at one radius lie within this, in parts of the size.
 const SAME_RADIUS: f64 = 0.01;
-/// The hub is seen on this part of the part's surface at least, and in this part of all directions.
+/// The hub shows on at least this part of the part's surface, and in this part of the sectors around the axis.
 const SEEN: f64 = 0.05;
 const ROUND: f64 = 0.6;
 /// No more than this part of what lies beyond it lies beside its ends.
 const ASIDE: f64 = 0.02;
 const SECTORS: usize = 24;
-/// What overhangs in level layers is more by this factor.
+/// Level layers must leave this many times as much overhanging.
 const BETTER: f64 = 2.0;
 
 /// The part as layers around its hub, where it has one and much less overhangs than in level layers.
-pub(super) fn around(mesh: &Mesh, whole: &State, judge: &Judge) -> Option<Division> {
-    if whole.hanging[0] <= judge.nothing || judge.settings.tilt < 90.0 {
+pub(super) fn around(whole: &State, judge: &Judge) -> Option<Division> {
+    if judge.settings.tilt < 90.0 {
         return None;
     }
-    let hubs = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().chain(judge.ways.iter().copied().take(super::ways::FACES));
+    let hubs = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().chain(judge.faces.iter().copied());
     let hubs = hubs.filter_map(|axis| Hub::about(axis, &whole.samples, judge));
     let hub = hubs.max_by(|a, b| a.seen.total_cmp(&b.seen))?;
     let hanging = hub.hanging(&whole.samples, judge);
@@ -39,8 +38,11 @@ pub(super) fn around(mesh: &Mesh, whole: &State, judge: &Judge) -> Option<Divisi
         side: Side::Outer,
         seam: SEAM,
     });
-    let piece = Piece { chart, within: Vec::new(), on_stock: true, volume: mesh.volume() };
-    (BETTER * hanging < whole.hanging[0]).then(|| Division { pieces: vec![piece], hanging, tilt: 90.0 })
+    let piece = Piece { chart, within: Vec::new(), on_stock: true };
+    // All around an axis that lies level, layers also hang overhead.
+    let lies = lies(hub.axis);
+    let tilt = 90.0 + lies.min(180.0 - lies);
+    (BETTER * hanging < whole.hanging[0]).then(|| Division { pieces: vec![piece], hanging, tilt })
 }
 
 /// Where layers are cut open, °.

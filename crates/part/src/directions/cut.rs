@@ -30,7 +30,7 @@ struct Group {
 
 /// The division after a cut; none where nothing is cut, or pieces cannot be parted by planes.
 pub(super) fn cut(state: &State, plane: Plane, judge: &Judge) -> Option<State> {
-    let down = Plane { origin: plane.origin, up: -plane.up };
+    let down = Plane { origin: plane.origin, up: DVec3::ZERO - plane.up };
     let (upper, trunk) = (plane.above(&state.trunk), down.above(&state.trunk));
     if upper.triangles.is_empty() || trunk.triangles.is_empty() {
         return None;
@@ -42,6 +42,9 @@ pub(super) fn cut(state: &State, plane: Plane, judge: &Judge) -> Option<State> {
         return None;
     }
     let (groups, hanging) = groups(&upper, plane, judge);
+    // The part's own undersides that lie in the cut are no cut.
+    let own = state.samples.iter().filter(|sample| judge.stands(sample, plane)).map(|sample| sample.area);
+    let hanging = hanging + own.sum::<f64>();
     let pieces = pieces(&groups, plane, &state.cuts)?;
     let hanging = [judge.hanging(&samples, DVec3::Z, judge.table()), state.hanging[1] + hanging];
     let all: Vec<Piece> = state.pieces.iter().cloned().chain(pieces).collect();
@@ -55,8 +58,7 @@ pub(super) fn cut(state: &State, plane: Plane, judge: &Judge) -> Option<State> {
 fn groups(upper: &Mesh, plane: Plane, judge: &Judge) -> (Vec<Group>, f64) {
     let solids = Solids::of(upper);
     let (mut groups, mut hanging): (Vec<Group>, f64) = (Vec::new(), 0.0);
-    for number in 0..solids.count() {
-        let mesh = solids.mesh(&[number]);
+    for mesh in solids.each() {
         let samples = samples(&mesh, judge.size);
         let best = judge.best(&samples, plane);
         let up = if best.angle_between(plane.up).to_degrees() < SAME { plane.up } else { best };
@@ -79,7 +81,7 @@ fn pieces(groups: &[Group], plane: Plane, cuts: &[Plane]) -> Option<Vec<Piece>> 
         let lowest = group.mesh.vertices.iter().map(|p| group.up.dot(*p)).fold(f64::MAX, f64::min);
         let first = if square { plane } else { Plane { origin: group.up * lowest, up: group.up } };
         let within = cuts.iter().copied().chain((!square).then_some(plane)).chain(parted).collect();
-        Some(Piece { chart: Chart::Plane(first.rounded()), within, on_stock: false, volume: group.mesh.volume() })
+        Some(Piece { chart: Chart::Plane(first.rounded()), within, on_stock: false })
     };
     groups.iter().enumerate().map(piece).collect()
 }

@@ -4,7 +4,7 @@
 //! Planes take off what lies above them, from the top down, as clipping planes do in Wu et al. 2018 (*General support-effective
 //! decomposition for multi-directional 3-D printing*, arXiv 1812.00606): a plane is worth as much as the overhang that what is left
 //! loses. What is taken off may be several pieces; each has the direction that suits it, and stands on the cut. The most promising
-//! divisions are followed side by side (a beam search). Only the surface is looked at, so that open and broken models are divided, too.
+//! divisions are followed side by side (a beam search). Only the surface is looked at, so broken meshes do not matter.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -33,11 +33,11 @@ use ways::Judge;
 /// What may be divided how.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// A wall may lean so far from the direction in which it is built, °.
+    /// Largest angle between a wall and the direction in which it is built, °.
     pub lean: f64,
-    /// A direction may lie so far from the vertical, °.
+    /// Largest angle between a direction and the vertical, °. Around a hub, whose axis the part turns about, it must be 90.
     pub tilt: f64,
-    /// Width of a bead, mm: overhangs of a few beads, and pieces as small, do not count.
+    /// Width of a bead, mm: overhangs as small as a few beads do not count.
     pub bead: f64,
 }
 
@@ -46,7 +46,7 @@ pub struct Settings {
 pub struct Division {
     /// In the order in which they are built.
     pub pieces: Vec<Piece>,
-    /// Area that still overhangs, mm².
+    /// Area that still overhangs, or lies so near the table that a torch of 25 mm radius has no room, mm².
     pub hanging: f64,
     /// Angle between the vertical and the direction that lies farthest from it, °.
     pub tilt: f64,
@@ -61,8 +61,6 @@ pub struct Piece {
     pub within: Vec<Plane>,
     /// Whether its first layer lies on metal that is there already, such as a turned hub.
     pub on_stock: bool,
-    /// mm³; with what is there already.
-    pub volume: f64,
 }
 
 /// Number of divisions that are followed side by side, and of planes that are tried on each.
@@ -82,9 +80,9 @@ const WORTH: f64 = 0.004;
 const PIECE: f64 = 0.002;
 const TILT: f64 = 0.02;
 
-/// A part whose surface is somewhere so many times as far from the middle line as on average branches.
+/// A part branches if some of its surface lies farther from the middle line than this many times the mean distance.
 const BRANCHES: f64 = 2.5;
-/// The ends of a middle line lie so near to their true directions, °.
+/// A middle line that ends this near to level, °, ends level.
 const SLACK: f64 = 2.0;
 
 /// A division that may be cut further.
@@ -102,7 +100,8 @@ struct State {
     cost: f64,
 }
 
-/// The best ways to divide a part that stands on the table, the best first; the part as one piece is the last of them.
+/// Ways to divide a part that stands on the table: along a tube or around a hub, or, where that leaves something overhanging, by planes,
+/// the best first. The part as one piece is the last of them, and the only one where nothing overhangs.
 ///
 /// ```
 /// use bead_part::directions::{Settings, divisions};
@@ -120,19 +119,27 @@ struct State {
 /// # Errors
 /// [`Cancelled`].
 pub fn divisions(mesh: &Mesh, settings: Settings, task: &Task) -> Result<Vec<Division>, Cancelled> {
-    let judge = Judge::new(mesh, settings);
-    let whole = State::whole(mesh, &judge);
+    let samples = samples(mesh, mesh.size().length());
+    let judge = Judge::new(mesh, &samples, settings);
+    let whole = State::whole(mesh, samples, &judge);
+    if whole.hanging[0] <= judge.nothing {
+        return Ok(vec![whole.division()]);
+    }
     let mut offered = tube(mesh, &judge, &whole, task)?;
-    offered.extend(around::around(mesh, &whole, &judge));
+    offered.extend(around::around(&whole, &judge));
+    if offered.iter().any(|division| division.hanging <= judge.nothing) {
+        offered.push(whole.division());
+        return Ok(offered);
+    }
     let (mut open, mut ended) = (vec![whole.clone()], Vec::new());
     for _ in 0..CUTS {
-        task.check()?;
         let mut next: Vec<State> = Vec::new();
         for state in &open {
             let planes = ways::planes(&state.samples, &judge);
-            let cut: Vec<State> = planes.into_par_iter().filter_map(|plane| cut::cut(state, plane, &judge)).collect();
+            let cut = |plane| task.check().map(|()| cut::cut(state, plane, &judge));
+            let cut = planes.into_par_iter().map(cut).collect::<Result<Vec<_>, Cancelled>>()?;
             let better = |other: &State| other.cost < state.cost - judge.surface * WORTH;
-            next.extend(cut.into_iter().filter(better));
+            next.extend(cut.into_iter().flatten().filter(better));
         }
         next.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         next.truncate(BEAM);
@@ -155,9 +162,6 @@ pub fn divisions(mesh: &Mesh, settings: Settings, task: &Task) -> Result<Vec<Div
 
 /// A bent tube or bar as one piece along its middle line.
 fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Vec<Division>, Cancelled> {
-    if whole.hanging[0] <= judge.nothing {
-        return Ok(Vec::new());
-    }
     let guide = match middle_line(mesh, task) {
         Ok(guide) => Guide::through(guide.points()).unwrap_or(guide),
         Err(NoMiddleLine::Cancelled(cancelled)) => return Err(cancelled),
@@ -174,9 +178,11 @@ fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Vec<Di
     let hanging = whole.samples.iter().zip(&lies).filter(hangs).map(|(sample, _)| sample.area).sum::<f64>() + 0.0;
     let along = guide.points().windows(2).map(|pair| (pair[1] - pair[0]).normalize_or_zero());
     let tilt = along.map(ways::lies).fold(0.0, f64::max);
+    // The ends of a middle line are a little off.
+    let tilt = if (tilt - 90.0).abs() < SLACK { 90.0 } else { tilt };
     let chart = Chart::Guide(Arc::new(guide));
-    let piece = Piece { chart, within: Vec::new(), on_stock: false, volume: mesh.volume() };
-    let fits = tilt <= judge.settings.tilt + SLACK && hanging < BETTER * whole.hanging[0];
+    let piece = Piece { chart, within: Vec::new(), on_stock: false };
+    let fits = tilt <= judge.settings.tilt && hanging < BETTER * whole.hanging[0];
     Ok(Vec::from_iter(fits.then(|| Division { pieces: vec![piece], hanging, tilt })))
 }
 
@@ -205,8 +211,7 @@ impl Along {
 }
 
 impl State {
-    fn whole(mesh: &Mesh, judge: &Judge) -> Self {
-        let samples = samples(mesh, judge.size);
+    fn whole(mesh: &Mesh, samples: Vec<Sample>, judge: &Judge) -> Self {
         let hanging = judge.hanging(&samples, DVec3::Z, judge.table());
         let trunk = mesh.clone();
         Self { trunk, samples, cuts: Vec::new(), pieces: Vec::new(), hanging: [hanging, 0.0], cost: hanging }
@@ -214,7 +219,7 @@ impl State {
 
     fn division(self) -> Division {
         let tilt = self.pieces.iter().map(Piece::tilt).fold(0.0, f64::max);
-        let trunk = Piece { chart: Chart::default(), within: self.cuts, on_stock: false, volume: self.trunk.volume() };
+        let trunk = Piece { chart: Chart::default(), within: self.cuts, on_stock: false };
         let pieces = std::iter::once(trunk).chain(self.pieces.into_iter().rev()).collect();
         Division { pieces, hanging: self.hanging.iter().sum(), tilt }
     }

@@ -1,6 +1,6 @@
 //! Directions worth trying, and how well they suit a piece.
 
-use super::samples::{Sample, samples};
+use super::samples::Sample;
 use super::{PIECE, Settings, TILT, TRIES, WORTH};
 use crate::chart::Plane;
 use crate::model::Mesh;
@@ -8,10 +8,10 @@ use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Directions spread over the half sphere, so far from one another at most that turning one in small steps finds the best.
+/// Directions spread over the half sphere, close enough together that turning one in small steps finds the best.
 const SPREAD: usize = 160;
-/// The largest flat faces give directions, too; normals whose difference is shorter than this belong to one.
-pub(super) const FACES: usize = 16;
+/// The largest flat faces give directions, too; their normals are collected on a grid of this spacing.
+const FACES: usize = 16;
 const SAME_FACE: f64 = 0.02;
 /// Steps in which a direction is turned to a better one, °.
 const TURNS: [f64; 5] = [6.0, 3.0, 1.5, 0.5, 0.1];
@@ -22,7 +22,7 @@ const HEIGHTS: usize = 60;
 /// Along each direction, planes are tried that spare these shares of the most that one of them can.
 const SHARES: [f64; 4] = [1.0, 0.9, 0.7, 0.45];
 /// Two planes are alike whose directions differ by less than this, °, and whose heights by less than this part of the size.
-const ALIKE: (f64, f64) = (8.0, 0.04);
+const SAME_CUT: (f64, f64) = (8.0, 0.04);
 /// How much a leaning face costs that does not overhang, as a part of its area if it faced straight down.
 const LEANS: f64 = 0.05;
 /// Radius of a torch, and its distance from the metal, mm.
@@ -44,18 +44,21 @@ pub(super) struct Judge {
     pub(super) nothing: f64,
     /// Sine of the angle by which walls may lean.
     steep: f64,
-    pub(super) ways: Vec<DVec3>,
+    ways: Vec<DVec3>,
+    /// Those of them that are square to large flat faces.
+    pub(super) faces: Vec<DVec3>,
 }
 
 impl Judge {
-    pub(super) fn new(mesh: &Mesh, settings: Settings) -> Self {
-        let size = mesh.size().length();
-        let surface: f64 = samples(mesh, size).iter().map(|sample| sample.area).sum();
+    pub(super) fn new(mesh: &Mesh, samples: &[Sample], settings: Settings) -> Self {
+        let surface: f64 = samples.iter().map(|sample| sample.area).sum();
         let steep = settings.lean.to_radians().sin();
         let least = settings.tilt.to_radians().cos() - 1e-6;
-        let ways = std::iter::once(DVec3::Z).chain(faces(mesh)).chain(spread());
+        let faces = faces(mesh);
+        let ways = std::iter::once(DVec3::Z).chain(faces.iter().copied()).chain(spread());
         let ways = ways.filter(|way| way.z >= least.max(0.0)).collect();
-        Self { settings, size, surface, nothing: NOTHING * settings.bead.powi(2), steep, ways }
+        let nothing = NOTHING * settings.bead.powi(2);
+        Self { settings, size: mesh.size().length(), surface, nothing, steep, ways, faces }
     }
 
     /// The plane of the table.
@@ -163,8 +166,8 @@ pub(super) fn planes(samples: &[Sample], judge: &Judge) -> Vec<Plane> {
     let mut planes: Vec<Plane> = Vec::new();
     for (_, plane) in found {
         let alike = |other: &Plane| {
-            other.up.angle_between(plane.up).to_degrees() < ALIKE.0
-                && (other.up.dot(plane.origin - other.origin)).abs() < ALIKE.1 * judge.size
+            other.up.angle_between(plane.up).to_degrees() < SAME_CUT.0
+                && (other.up.dot(plane.origin - other.origin)).abs() < SAME_CUT.1 * judge.size
         };
         if planes.len() < TRIES && !planes.iter().any(alike) {
             planes.push(plane.rounded());
@@ -183,9 +186,8 @@ fn spread() -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Normals of the largest flat faces, both ways.
+/// Normals of the largest flat faces, those that point down turned over.
 fn faces(mesh: &Mesh) -> Vec<DVec3> {
-    let mut faces: Vec<(DVec3, f64)> = Vec::new();
     let mut sums: std::collections::BTreeMap<[i64; 3], (DVec3, f64)> = std::collections::BTreeMap::new();
     for corners in &mesh.triangles {
         let [a, b, c] = corners.map(|corner| mesh.vertices[corner as usize]);
@@ -196,7 +198,7 @@ fn faces(mesh: &Mesh) -> Vec<DVec3> {
         sum.0 += normal * doubled.length();
         sum.1 += doubled.length();
     }
-    faces.extend(sums.into_values());
+    let mut faces: Vec<(DVec3, f64)> = sums.into_values().collect();
     faces.sort_by(|a, b| b.1.total_cmp(&a.1));
     faces.into_iter().take(FACES).filter_map(|(sum, _)| sum.try_normalize()).collect()
 }

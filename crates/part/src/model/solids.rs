@@ -64,6 +64,17 @@ impl<'a> Solids<'a> {
     /// Those of the given numbers as a mesh.
     pub fn mesh(&self, numbers: &[usize]) -> Mesh {
         let kept: Vec<usize> = (0..self.solid.len()).filter(|t| numbers.contains(&self.solid[*t])).collect();
+        self.of_triangles(&kept)
+    }
+
+    /// Each by itself.
+    pub fn each(&self) -> impl Iterator<Item = Mesh> + '_ {
+        let mut triangles = vec![Vec::new(); self.count];
+        self.solid.iter().enumerate().for_each(|(t, solid)| triangles[*solid].push(t));
+        triangles.into_iter().map(|kept| self.of_triangles(&kept))
+    }
+
+    fn of_triangles(&self, kept: &[usize]) -> Mesh {
         let (mut vertices, mut vertex, mut triangle) = (Vec::new(), HashMap::new(), HashMap::new());
         for (new, &old) in kept.iter().enumerate() {
             triangle.insert(old as u32, new as u32);

@@ -112,7 +112,7 @@ impl WarningKind {
             ),
             Self::OverUnwelded => (
                 "over-unwelded",
-                "what lies below a pass is too narrow for a bead and was left out, so the pass would be laid in the air",
+                "what lies below a pass got no bead, as a rule because it is too narrow, so the pass would be laid in the air",
                 "use a narrower bead (bead.width), enlarge the part, or turn it",
             ),
             Self::HangingIsland => (
