@@ -18,6 +18,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["chart"],
             &["deviation", "example", "slice"],
             &["middle_line"],
+            &["directions"],
         ],
     ),
     (

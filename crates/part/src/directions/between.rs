@@ -1,16 +1,17 @@
-//! A plane between two sets of points (Gilbert's algorithm: the shortest way between their convex hulls).
+//! A plane between two sets of points: the way between their convex hulls is shortened until a plane square to it parts them
+//! (Gilbert's algorithm, ended early).
 
 use crate::chart::Plane;
 use glam::DVec3;
 
 /// Most steps; convex hulls that need more are taken to touch.
 const STEPS: usize = 400;
-/// Steps end when the plane moves by less than this part of the distance.
-const NEAR: f64 = 1e-3;
+/// Steps end when the hulls are apart by this part of the way between them, so that the plane has room on both sides.
+const ROOM: f64 = 0.7;
 /// Hulls nearer than this are not parted, mm.
 const APART: f64 = 0.05;
 
-/// The plane halfway between the convex hulls of two sets, with `upper` above it; none where they meet.
+/// A plane between the convex hulls of two sets, with `upper` above it, as far from one as from the other; none where they meet.
 pub(super) fn between(upper: &[DVec3], lower: &[DVec3]) -> Option<Plane> {
     let farthest =
         |points: &[DVec3], way: DVec3| points.iter().copied().max_by(|a, b| way.dot(*a).total_cmp(&way.dot(*b)));
@@ -23,10 +24,10 @@ pub(super) fn between(upper: &[DVec3], lower: &[DVec3]) -> Option<Plane> {
         }
         let (next_above, next_below) = (farthest(upper, -way)?, farthest(lower, way)?);
         let next = next_above - next_below;
-        if way.dot(way - next) <= NEAR * way.length_squared() {
+        if way.dot(next) >= ROOM * way.length_squared() {
             let up = way.normalize();
             let middle = (up.dot(next_above) + up.dot(next_below)) / 2.0;
-            return (up.dot(next) > APART).then_some(Plane { origin: up * middle, up });
+            return Some(Plane { origin: up * middle, up });
         }
         // To the point nearest to the other hull on the line to the next ones.
         let step = next - way;
@@ -47,11 +48,15 @@ mod tests {
     }
 
     #[test]
-    fn the_plane_lies_halfway_between_two_boxes() {
+    fn a_plane_parts_two_boxes_with_room_on_both_sides() {
         let lower = corners(DVec3::ZERO, DVec3::splat(10.0));
         let upper = corners(DVec3::new(14.0, -30.0, 3.0), DVec3::new(20.0, 40.0, 5.0));
         let plane = between(&upper, &lower).unwrap();
-        assert!(plane.up.distance(DVec3::X) < 1e-3 && (plane.origin.x - 12.0).abs() < 0.01, "{plane:?}");
+        let height = |p: &DVec3| plane.up.dot(*p - plane.origin);
+        let room =
+            [upper.iter().map(height).fold(f64::MAX, f64::min), -lower.iter().map(height).fold(f64::MIN, f64::max)];
+        // The boxes are 4 mm apart.
+        assert!(room.iter().all(|room| (1.4..=2.0).contains(room)), "{room:?}");
     }
 
     #[test]
