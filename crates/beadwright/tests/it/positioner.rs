@@ -292,7 +292,7 @@ fn a_propeller_from_elsewhere_is_welded_around_its_hub() {
     assert!(hub.axis.abs().distance(DVec3::X) < 1e-3, "{}", hub.axis);
     mesh.vertices.iter_mut().for_each(|p| *p -= hub.through);
     profile.layers.bodies = Body::of_division("propeller", &found[0]);
-    profile.layers.bodies[0].chart = Chart::Cylinder(Cylinder { through: DVec3::ZERO, ..hub.clone() });
+    profile.layers.bodies[0].chart = Chart::Cylinder(Cylinder { through: DVec3::ZERO, ..*hub });
     let plan = plan::plan("propeller", &mesh, &profile, &Task::new()).unwrap();
     assert!(plan.summary.metrics.passes > 300, "{:?}", plan.summary.metrics);
     let layers: Vec<Layer> = plan.layers.into_iter().step_by(20).collect();
