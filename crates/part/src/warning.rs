@@ -245,7 +245,7 @@ impl WarningSummary {
                 times("island", "islands")
             ),
             WarningKind::HighStart => {
-                let base = if self.at.is_some() { "what its first layer should lie on" } else { "the plate" };
+                let base = if self.at.is_some() { "what its body stands on" } else { "the plate" };
                 format!(
                     "{layers}: the layers below have no room for a bead; the first would be laid {size:.2} mm above {base} {place}."
                 )
