@@ -254,7 +254,7 @@ fn a_part_with_few_beads_side_by_side_is_said_to_end_low() {
     let findings = check::check(&plan.layers, &profile, settings, &Task::new()).unwrap();
     let found = findings.iter().find(|finding| finding.kind == "built-height").unwrap();
     assert!(found.text.contains("below it"), "{}", found.text);
-    assert_eq!(found.severity, Severity::Serious, "no arc burns 10 mm farther away");
+    assert_eq!(found.severity, Severity::Serious, "no arc burns {} mm farther away", ended.hollow);
     let top = plan.layers.last().unwrap().z;
     assert!(found.place.is_some_and(|place: DVec3| (place.z - top).abs() < 1e-9));
 }
