@@ -82,6 +82,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         writeln!(out, "{plate} points of the plate around the part are left out")?;
     }
     if let Some(built) = &built {
+        writeln!(
+            out,
+            "beads are taken to be as high as their layers; the plan's built top shows where they end by the deposit model"
+        )?;
         print_built(&mut out, built)?;
     }
     print(&mut out, &figures)
