@@ -12,10 +12,13 @@ use beadwright::read_back::ReadBackError;
 
 /// What the command offers against the findings of a plan by this profile.
 pub(crate) fn words(profile: &Profile) -> Words {
-    match profile.layers.are_level() {
-        true => of_level,
-        false if profile.layers.bodies.is_empty() => of_charted,
-        false => of_bodies,
+    let layers = &profile.layers;
+    if layers.are_level() {
+        of_level
+    } else if layers.bodies.is_empty() {
+        of_charted
+    } else {
+        of_bodies
     }
 }
 

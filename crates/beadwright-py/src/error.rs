@@ -59,7 +59,24 @@ fn place_in(error: &(dyn Error + 'static)) -> Option<String> {
 
 /// What the package offers against a kind of finding.
 pub(crate) fn words(profile: &Profile) -> Words {
-    if profile.layers.are_level() { of_level } else { of_charted }
+    let layers = &profile.layers;
+    if layers.are_level() {
+        of_level
+    } else if layers.bodies.is_empty() {
+        of_charted
+    } else {
+        of_bodies
+    }
+}
+
+/// Bodies are already there: it matters where they are parted.
+fn of_bodies(kind: &str) -> Option<&'static str> {
+    match kind {
+        "high-start" | "nothing-below" | "in-the-air" | "over-unwelded" | "hanging-island" | "overhang" => {
+            Some("Other planes in layers.bodies part them elsewhere.")
+        }
+        other => of_level(other),
+    }
 }
 
 /// Layers that are not level begin where their chart does.
@@ -76,7 +93,7 @@ fn of_level(kind: &str) -> Option<&'static str> {
     Some(match kind {
         "high-start" | "nothing-below" => "Part.above(z) begins higher up, stand=\"flat\" turns the part.",
         "in-the-air" => "stand=\"orient\" and \"flat\" turn the part, Part.above(z) begins higher up.",
-        "over-unwelded" => "Part.open(scale=…) enlarges the part, stand=\"orient\" and \"flat\" turn it.",
+        "over-unwelded" => "Part.read(scale=…) enlarges the part, stand=\"orient\" and \"flat\" turn it.",
         "hanging-island" | "overhang" => "stand=\"orient\" turns the part.",
         "bare" | "void" => "compare() shows what other strategies leave.",
         "reach" => "suggest=True looks for a better place.",

@@ -1,6 +1,6 @@
 //! Blades on a hub and flanges on a shaft: layers around an axis, on a hub that is turned from bar stock.
 
-use super::samples::Sample;
+use super::samples::{Sample, area};
 use super::ways::{Judge, lies};
 use super::{Division, Piece, State};
 use crate::chart::{Chart, Cylinder, Side};
@@ -94,11 +94,11 @@ impl Hub {
         }
         let round = sectors.iter().filter(|seen| **seen).count() as f64 / SECTORS as f64;
         let through = u * middle.x + v * middle.y;
-        let hub = Self { axis, through, radius, seen, ends: [0.0; 2] };
-        let own = samples.iter().filter(|sample| (hub.away(sample).length() - radius).abs() < SAME_RADIUS * judge.size);
-        let along = own.map(|sample| axis.dot(sample.place));
+        let at_radius =
+            |sample: &&Sample| (flat(sample.place).distance(middle) - radius).abs() < SAME_RADIUS * judge.size;
+        let along = samples.iter().filter(at_radius).map(|sample| axis.dot(sample.place));
         let ends = along.fold([f64::MAX, f64::MIN], |[low, high], at| [low.min(at), high.max(at)]);
-        let hub = Self { ends, ..hub };
+        let hub = Self { axis, through, radius, seen, ends };
         (seen > SEEN * judge.surface && round >= ROUND && hub.carries(samples, judge)).then_some(hub)
     }
 
@@ -119,8 +119,7 @@ impl Hub {
             at < self.ends[0] - slack || at > self.ends[1] + slack
         };
         let beyond = || samples.iter().filter(|sample| self.is_beyond(sample, judge));
-        let area = |samples: &mut dyn Iterator<Item = &Sample>| samples.map(|sample| sample.area).sum::<f64>();
-        let (all, aside) = (area(&mut beyond()), area(&mut beyond().filter(aside)));
+        let (all, aside) = (area(beyond()), area(beyond().filter(aside)));
         all > SEEN * judge.surface && aside < ASIDE * all
     }
 
@@ -129,7 +128,7 @@ impl Hub {
         let hangs = |sample: &&Sample| {
             self.is_beyond(sample, judge) && judge.hangs(sample, self.away(sample).normalize_or_zero())
         };
-        samples.iter().filter(hangs).map(|sample| sample.area).sum::<f64>() + 0.0
+        area(samples.iter().filter(hangs))
     }
 }
 

@@ -1,7 +1,7 @@
 //! A plane takes off what lies above it, as pieces with directions of their own.
 
 use super::between::between;
-use super::samples::samples;
+use super::samples::{area, samples};
 use super::ways::Judge;
 use super::{Piece, State};
 use crate::chart::{Chart, Plane};
@@ -37,14 +37,12 @@ pub(super) fn cut(state: &State, plane: Plane, judge: &Judge) -> Option<State> {
     }
     let samples = samples(&trunk, judge.size);
     // What stands on a thin slice of the part stands on nothing.
-    let left: f64 = samples.iter().map(|sample| sample.area).sum();
-    if left < LEAST * judge.surface || thickness(&trunk, plane.up) < THICK * judge.settings.bead {
+    if area(samples.iter()) < LEAST * judge.surface || thickness(&trunk, plane.up) < THICK * judge.settings.bead {
         return None;
     }
     let (groups, hanging) = groups(&upper, plane, judge);
     // The part's own undersides that lie in the cut are no cut.
-    let own = state.samples.iter().filter(|sample| judge.stands(sample, plane)).map(|sample| sample.area);
-    let hanging = hanging + own.sum::<f64>();
+    let hanging = hanging + area(state.samples.iter().filter(|sample| judge.stands(sample, plane)));
     let pieces = pieces(&groups, plane, &state.cuts)?;
     let hanging = [judge.hanging(&samples, DVec3::Z, judge.table()), state.hanging[1] + hanging];
     let all: Vec<Piece> = state.pieces.iter().cloned().chain(pieces).collect();

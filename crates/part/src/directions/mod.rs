@@ -26,7 +26,7 @@ use crate::model::Mesh;
 use crate::task::{Cancelled, Task};
 use glam::DVec3;
 use rayon::prelude::*;
-use samples::{Sample, samples};
+use samples::{Sample, area, samples};
 use std::sync::Arc;
 use ways::Judge;
 
@@ -79,7 +79,6 @@ const WORTH: f64 = 0.004;
 /// What a piece, and the tilt of a whole part by 90°, cost as overhang, in parts of the surface.
 const PIECE: f64 = 0.002;
 const TILT: f64 = 0.02;
-
 /// A part branches if some of its surface lies farther from the middle line than this many times the mean distance.
 const BRANCHES: f64 = 2.5;
 /// A middle line that ends this near to level, °, ends level.
@@ -125,8 +124,8 @@ pub fn divisions(mesh: &Mesh, settings: Settings, task: &Task) -> Result<Vec<Div
     if whole.hanging[0] <= judge.nothing {
         return Ok(vec![whole.division()]);
     }
-    let mut offered = tube(mesh, &judge, &whole, task)?;
-    offered.extend(around::around(&whole, &judge));
+    let recognized = tube(mesh, &judge, &whole, task)?.into_iter().chain(around::around(&whole, &judge));
+    let mut offered: Vec<Division> = recognized.collect();
     if offered.iter().any(|division| division.hanging <= judge.nothing) {
         offered.push(whole.division());
         return Ok(offered);
@@ -161,21 +160,21 @@ pub fn divisions(mesh: &Mesh, settings: Settings, task: &Task) -> Result<Vec<Div
 }
 
 /// A bent tube or bar as one piece along its middle line.
-fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Vec<Division>, Cancelled> {
+fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Option<Division>, Cancelled> {
     let guide = match middle_line(mesh, task) {
         Ok(guide) => Guide::through(guide.points()).unwrap_or(guide),
         Err(NoMiddleLine::Cancelled(cancelled)) => return Err(cancelled),
-        Err(_) => return Ok(Vec::new()),
+        Err(_) => return Ok(None),
     };
     // All of the part lies along it: it ends where the part does, and no branch leaves it.
     let lies: Vec<Along> = whole.samples.iter().map(|sample| Along::of(guide.points(), sample.place)).collect();
     let usual = lies.iter().map(|along| along.away).sum::<f64>() / lies.len() as f64;
     if lies.iter().any(|along| along.away > BRANCHES * usual || along.beyond > usual) {
-        return Ok(Vec::new());
+        return Ok(None);
     }
     let hangs =
         |(sample, along): &(&Sample, &Along)| judge.hangs(sample, along.way) && !judge.stands(sample, judge.table());
-    let hanging = whole.samples.iter().zip(&lies).filter(hangs).map(|(sample, _)| sample.area).sum::<f64>() + 0.0;
+    let hanging = area(whole.samples.iter().zip(&lies).filter(hangs).map(|(sample, _)| sample));
     let along = guide.points().windows(2).map(|pair| (pair[1] - pair[0]).normalize_or_zero());
     let tilt = along.map(ways::lies).fold(0.0, f64::max);
     // The ends of a middle line are a little off.
@@ -183,7 +182,7 @@ fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Vec<Di
     let chart = Chart::Guide(Arc::new(guide));
     let piece = Piece { chart, within: Vec::new(), on_stock: false };
     let fits = tilt <= judge.settings.tilt && hanging < BETTER * whole.hanging[0];
-    Ok(Vec::from_iter(fits.then(|| Division { pieces: vec![piece], hanging, tilt })))
+    Ok(fits.then(|| Division { pieces: vec![piece], hanging, tilt }))
 }
 
 /// How a place lies along a line through points.

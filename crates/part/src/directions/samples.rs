@@ -14,6 +14,12 @@ pub(super) struct Sample {
     pub(super) area: f64,
 }
 
+/// Area of pieces, mm².
+pub(super) fn area<'a>(samples: impl Iterator<Item = &'a Sample>) -> f64 {
+    // A sum of nothing would be a negative zero.
+    samples.fold(0.0, |sum, sample| sum + sample.area)
+}
+
 /// Pieces are divided until their edges are shorter than this part of the part's size.
 const FINE: f64 = 0.03;
 

@@ -1,6 +1,6 @@
 //! Directions worth trying, and how well they suit a piece.
 
-use super::samples::Sample;
+use super::samples::{Sample, area};
 use super::{PIECE, Settings, TILT, TRIES, WORTH};
 use crate::chart::Plane;
 use crate::model::Mesh;
@@ -27,7 +27,7 @@ const SAME_CUT: (f64, f64) = (8.0, 0.04);
 const LEANS: f64 = 0.05;
 /// Radius of a torch, and its distance from the metal, mm.
 const TORCH: f64 = 25.0;
-/// Overhang of so many squared bead widths is none.
+/// Overhang up to this many squared bead widths does not count.
 const NOTHING: f64 = 4.0;
 /// A face lies on the table, or in a cut, if it is so near, in parts of the size, and faces it within the angle of this cosine.
 const ON_IT: f64 = 2e-3;
@@ -51,7 +51,7 @@ pub(super) struct Judge {
 
 impl Judge {
     pub(super) fn new(mesh: &Mesh, samples: &[Sample], settings: Settings) -> Self {
-        let surface: f64 = samples.iter().map(|sample| sample.area).sum();
+        let surface = area(samples.iter());
         let steep = settings.lean.to_radians().sin();
         let least = settings.tilt.to_radians().cos() - 1e-6;
         let faces = faces(mesh);
@@ -73,7 +73,7 @@ impl Judge {
         // A torch square to the layer touches the table below this height: its side is a radius away from its axis.
         let low = TORCH * (tilt.sin() - tilt.cos());
         let hangs = |sample: &&Sample| sample.place.z < low || self.hangs(sample, up) && !self.stands(sample, base);
-        samples.iter().filter(hangs).map(|sample| sample.area).sum::<f64>() + 0.0
+        area(samples.iter().filter(hangs))
     }
 
     pub(super) fn hangs(&self, sample: &Sample, up: DVec3) -> bool {
