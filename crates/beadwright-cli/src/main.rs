@@ -7,6 +7,7 @@ mod batch;
 mod bead;
 mod build;
 mod check;
+mod clad;
 mod compare;
 mod completions;
 mod convert;
@@ -70,6 +71,8 @@ enum Command {
     Guide(guide::Arguments),
     /// Write the surface of a model as one on which layers are stacked (a file for `plan --bodies`).
     Surface(surface::Arguments),
+    /// Make a model of the cladding of a base, over its surface or around a pipe, with its bodies for `plan --onto`.
+    Clad(clad::Arguments),
     /// Plan a model with every strategy, and judge them side by side.
     Compare(compare::Arguments),
     /// Plan many models with many profiles, strategies and values, and put the results into one table.
@@ -120,6 +123,7 @@ fn main() -> ExitCode {
         Command::Directions(arguments) => directions::run(&arguments),
         Command::Guide(arguments) => guide::run(&arguments),
         Command::Surface(arguments) => surface::run(&arguments),
+        Command::Clad(arguments) => clad::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

@@ -26,10 +26,7 @@ pub(crate) struct Arguments {
     wanted: profile::Wanted,
 }
 
-/// Heights are written with this many places, mm.
-const PLACES: f64 = 1e4;
-
-fn parse_step(text: &str) -> Result<f64, String> {
+pub(crate) fn parse_step(text: &str) -> Result<f64, String> {
     let step: f64 = text.parse().map_err(|_| "a length in mm is expected".to_owned())?;
     if (0.1..=100.0).contains(&step) { Ok(step) } else { Err("the step must lie between 0.1 and 100 mm".to_owned()) }
 }
@@ -43,9 +40,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let plane: Chart = format!("plane:up={}", arguments.up).parse().context("--up")?;
     let up = plane.sheet(0.0).at(DVec3::ZERO).normal;
     let context = || arguments.model.model.display().to_string();
-    let found = Surface::of_mesh(&import.mesh, up, arguments.step).with_context(context)?;
-    let rounded = found.heights().iter().map(|height| (height * PLACES).round() / PLACES + 0.0).collect();
-    let surface = Surface::new(up, found.from(), found.step(), found.columns(), rounded).with_context(context)?;
+    let surface = Surface::of_mesh(&import.mesh, up, arguments.step).with_context(context)?.rounded();
     let (steepest, place) = steepest(&surface);
     let (count, columns) = (surface.heights().len(), surface.columns());
     let part = arguments.model.part();

@@ -7,6 +7,7 @@
 //! | [`model`] | meshes and curves read from files (STL, 3MF, OBJ, PLY, IGES, SVG), repaired and placed |
 //! | [`slice`](mod@slice) | level slices: islands with holes, or the lines of an open surface |
 //! | [`directions`] | a part divided into pieces with directions of their own |
+//! | [`cladding`] | metal over the surface of a part that is there |
 //! | [`middle_line`] | the curve in the middle of a bent tube, from its sections |
 //! | [`deviation`] | signed distances of measured points to a mesh |
 //! | [`example`] | parametric example parts |
@@ -15,6 +16,7 @@
 //! | [`text`] | encodings and line ends |
 
 pub mod chart;
+pub mod cladding;
 pub mod curve;
 pub mod deviation;
 pub mod directions;

@@ -86,6 +86,34 @@ fn a_surface_is_clad() {
     assert!(why.contains("body clad (layers.bodies)"), "{why}");
 }
 
+/// What the command prints is what plans the cladding: on an area of a dome, and around the bar of a shaft.
+#[test]
+fn cladding_is_planned_by_the_command_that_comes_with_it() {
+    let folder = TempDir::new().unwrap();
+    done(folder.path(), &["example", "dome", "-o", "dome.stl"]);
+    done(folder.path(), &["example", "shaft", "-o", "shaft.stl"]);
+    let square = "<svg xmlns='http://www.w3.org/2000/svg' width='50mm' height='40mm' viewBox='0 0 50 40'>\
+                  <rect x='5' y='5' width='40' height='30'/></svg>";
+    fs::write(folder.path().join("area.svg"), square).unwrap();
+    let planned = |clad: &[&str], layers: u64| {
+        let said = done(folder.path(), clad);
+        let command = said.lines().nth(1).unwrap().trim().replace('\'', "");
+        let words: Vec<&str> = command.split(' ').skip(1).chain(["--json", "-o", "out"]).collect();
+        let output = run(folder.path(), &words);
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!((json["layers"].as_u64(), json["arc_starts"].as_u64()), (Some(layers), Some(layers)), "{command}");
+        let [laid, part] = ["deposited_volume_mm3", "mesh_volume_mm3"].map(|key| json[key].as_f64().unwrap());
+        assert!((laid / part - 1.0).abs() < 0.02, "{command}: {laid} of {part}");
+    };
+    planned(&["clad", "dome.stl", "--layers", "2", "--area", "area.svg", "-o", "patch.stl"], 2);
+    let around = ["--around", "axis=z,radius=25", "--from", "60", "--to", "105", "-o", "sleeve.stl"];
+    planned(&[&["clad", "shaft.stl", "--layers", "3"][..], &around].concat(), 3);
+    let why = fails(folder.path(), &["clad", "shaft.stl", "--around", "axis=z,radius=25"]);
+    assert!(why.contains("from 60.0 to 105.0 mm") && why.contains("--from and --to"), "{why}");
+    assert!(!folder.path().join("cladding.stl").exists());
+    assert!(fails(folder.path(), &["clad", "dome.stl", "-o", "dome.stl"]).contains("that is the base"));
+}
+
 #[test]
 fn faults_of_a_file_of_bodies_are_named() {
     let folder = TempDir::new().unwrap();

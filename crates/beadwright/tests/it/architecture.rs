@@ -16,7 +16,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["curve"],
             &["model"],
             &["chart"],
-            &["deviation", "example", "slice"],
+            &["cladding", "deviation", "example", "slice"],
             &["middle_line"],
             &["directions"],
         ],

@@ -107,6 +107,13 @@ impl Surface {
         Self::new(up, from, step, columns, heights)
     }
 
+    /// The same surface with heights as they are written in files: of four places, mm.
+    pub fn rounded(&self) -> Self {
+        const PLACES: f64 = 1e4;
+        let heights = self.heights.iter().map(|height| (height * PLACES).round() / PLACES + 0.0).collect();
+        Self::new(self.up, self.from, self.step, self.columns, heights).unwrap_or_else(|_| self.clone())
+    }
+
     /// Direction along which heights are measured.
     pub fn up(&self) -> DVec3 {
         self.up
@@ -225,10 +232,12 @@ impl Basis {
 fn raise(tops: &mut [Option<f64>], columns: usize, from: DVec2, step: f64, [a, b, c]: [DVec3; 3]) {
     let [p, q, r] = [a, b, c].map(|corner| (corner.truncate() - from) / step);
     let area = (q - p).perp_dot(r - p);
-    if area == 0.0 {
+    let longest = [(p, q), (q, r), (r, p)].map(|(p, q)| p.distance_squared(q)).into_iter().fold(0.0, f64::max);
+    if area.abs() <= UPRIGHT * longest {
         return;
     }
-    let (low, high) = (p.min(q).min(r).ceil().max(DVec2::ZERO), p.max(q).max(r).floor());
+    let (low, high) = (p.min(q).min(r) - EDGE, p.max(q).max(r) + EDGE);
+    let (low, high) = (low.ceil().max(DVec2::ZERO), high.floor());
     for row in low.y as usize..=high.y.max(0.0) as usize {
         for column in low.x as usize..=high.x.max(0.0) as usize {
             let at = DVec2::new(column as f64, row as f64);
@@ -245,8 +254,10 @@ fn raise(tops: &mut [Option<f64>], columns: usize, from: DVec2, step: f64, [a, b
     }
 }
 
-/// Places this part of a triangle outside of it lie on its edge.
+/// Places this part of a triangle, or of a step, outside of it lie on its edge.
 const EDGE: f64 = 1e-9;
+/// A triangle whose shadow has less than this part of the area of a square is seen edge-on: rounding would decide how high it is.
+const UPRIGHT: f64 = 1e-9;
 
 /// Heights everywhere: where there are none, the surface goes on straight for a few steps, then level.
 fn spread(mut tops: Vec<Option<f64>>, columns: usize) -> Option<Vec<f64>> {

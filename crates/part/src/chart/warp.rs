@@ -38,6 +38,34 @@ pub fn warped(chart: &Chart, mesh: &Mesh, tolerance: f64, task: &Task) -> Result
     }
 }
 
+/// The reverse over a surface: a mesh that is given in its coordinates, in space, divided until its edges lie within `tolerance`
+/// (mm) of the true ones.
+///
+/// # Errors
+/// [`WarpError::Cancelled`], and [`WarpError::Steep`] where layers cannot follow the surface.
+pub fn bent(surface: &Surface, flat: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
+    let place = |p: DVec3| surface.at(p).place;
+    let cut = |a: DVec3, b: DVec3| {
+        let off = |part: f64| place(a.lerp(b, part)).distance(place(a).lerp(place(b), part));
+        let is_short = a.distance(b) < SHORT_OVER * surface.step();
+        let long = a.distance(b) > surface.step();
+        let bent = !is_short && (long || [0.25, 0.5, 0.75].into_iter().any(|part| off(part) > tolerance));
+        Ok(bent.then(|| a.midpoint(b)))
+    };
+    let Divided { vertices, triangles } = Divided::of(flat, cut, task)?;
+    check_slope(surface, &vertices)?;
+    Ok(Mesh::from_triangles(vertices.into_iter().map(place).collect(), triangles).0)
+}
+
+/// # Errors
+/// [`WarpError::Steep`] where layers at these coordinates cannot follow a surface.
+fn check_slope(surface: &Surface, coordinates: &[DVec3]) -> Result<(), WarpError> {
+    match coordinates.iter().find(|p| surface.stretch(p.truncate()) > STEEPEST) {
+        Some(p) => Err(WarpError::Steep { place: surface.at(*p).place, stretch: surface.stretch(p.truncate()) }),
+        None => Ok(()),
+    }
+}
+
 /// Why a mesh has no place in a chart.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum WarpError {
@@ -90,10 +118,8 @@ fn over(surface: &Surface, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<M
     let divided = Divided::of(mesh, cut, task)?;
     let whole = Mesh::from_triangles(divided.vertices, divided.triangles).0;
     let unrolled = mapped(whole, |p| surface.coordinates(p));
-    match unrolled.vertices.iter().find(|p| surface.stretch(p.truncate()) > STEEPEST) {
-        Some(p) => Err(WarpError::Steep { place: surface.at(*p).place, stretch: surface.stretch(p.truncate()) }),
-        None => Ok(unrolled),
-    }
+    check_slope(surface, &unrolled.vertices)?;
+    Ok(unrolled)
 }
 
 /// Edges shorter than this part of the grid of a surface are straight over it.

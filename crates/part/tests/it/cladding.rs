@@ -1,0 +1,91 @@
+//! Cladding is metal of the thickness asked for, where it is asked for, on the surface of its base.
+
+use bead_part::chart::{Chart, Cylinder, Side};
+use bead_part::cladding::{CladdingError, around, over};
+use bead_part::model::{Mesh, solid::Solid};
+use bead_part::task::Task;
+use glam::{DQuat, DVec2, DVec3};
+use planar::{Polygon, Region, Ring};
+use std::f64::consts::PI;
+
+/// A block of 160 × 100 mm whose top is a saddle.
+fn saddle(up: DVec3) -> Mesh {
+    let height = |p: DVec2| 30.0 + p.x * p.x / 900.0 - p.y * p.y / 500.0;
+    let (columns, rows) = (64, 40);
+    let place = |i: usize, j: usize| DVec2::new(2.5 * i as f64 - 80.0, 2.5 * j as f64 - 50.0);
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for (j, i) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (j, i))) {
+        let p = place(i, j);
+        vertices.extend([p.extend(height(p)), p.extend(0.0)]);
+    }
+    let top = |i: usize, j: usize| 2 * (j * (columns + 1) + i) as u32;
+    for (j, i) in (0..rows).flat_map(|j| (0..columns).map(move |i| (j, i))) {
+        let [a, b, c, d] = [top(i, j), top(i + 1, j), top(i + 1, j + 1), top(i, j + 1)];
+        triangles.extend([[a, b, c], [a, c, d], [a + 1, c + 1, b + 1], [a + 1, d + 1, c + 1]]);
+    }
+    let mut side = |a: u32, b: u32| triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
+    (0..columns).for_each(|i| {
+        side(top(i, 0), top(i + 1, 0));
+        side(top(i + 1, rows), top(i, rows));
+    });
+    (0..rows).for_each(|j| {
+        side(top(columns, j), top(columns, j + 1));
+        side(top(0, j + 1), top(0, j));
+    });
+    let turn = DQuat::from_rotation_arc(DVec3::Z, up);
+    Mesh::from_triangles(vertices.into_iter().map(|p| turn * p).collect(), triangles).0
+}
+
+#[test]
+fn a_surface_is_covered_evenly_whichever_way_it_faces() {
+    for up in [DVec3::Z, DVec3::X, DVec3::new(0.3, -0.5, 0.81).normalize()] {
+        let cladding = over(&saddle(up), up, 5.0, None, 4.0, &Task::new()).unwrap();
+        let volume = cladding.mesh.volume();
+        assert!((volume / (160.0 * 100.0 * 4.0) - 1.0).abs() < 0.005, "{up}: {volume}");
+        let heights: Vec<f64> = cladding.mesh.vertices.iter().map(|p| cladding.chart.coordinates(*p).z).collect();
+        assert!(heights.iter().all(|height| (-0.01..=4.01).contains(height)), "{up}");
+    }
+}
+
+#[test]
+fn an_area_limits_what_is_clad() {
+    let square = |from: f64, to: f64| {
+        let corners = [(from, from), (to, from), (to, to), (from, to)].map(DVec2::from);
+        Region::from(Polygon::simple(Ring::new(corners.to_vec())))
+    };
+    let base = saddle(DVec3::Z);
+    let clad = |area: &Region| over(&base, DVec3::Z, 5.0, Some(area), 4.0, &Task::new());
+    assert!((clad(&square(-20.0, 30.0)).unwrap().mesh.volume() / (2500.0 * 4.0) - 1.0).abs() < 0.005);
+    // Only where there is something to lie on.
+    assert!((clad(&square(20.0, 300.0)).unwrap().mesh.volume() / (60.0 * 30.0 * 4.0) - 1.0).abs() < 0.005);
+    assert_eq!(clad(&square(200.0, 300.0)), Err(CladdingError::NoArea));
+}
+
+#[test]
+fn a_pipe_is_covered_outside_and_inside() {
+    let section = [[20.0, 10.0], [28.0, 10.0], [28.0, 90.0], [20.0, 90.0]].map(DVec2::from_array);
+    let axis = DVec3::new(1.0, 2.0, -2.0) / 3.0;
+    let (turn, through) = (DQuat::from_rotation_arc(DVec3::Z, axis), DVec3::new(5.0, -40.0, 12.0));
+    let Solid { vertices, triangles } = Solid::revolve(&section, 90);
+    let base = Mesh::from_triangles(vertices.iter().map(|p| turn * *p + through).collect(), triangles).0;
+    let cylinder = |radius: f64, side: Side| Cylinder { axis, through, radius, side, seam: 180.0 };
+    let volume = |near: f64, far: f64, length: f64| PI * (far * far - near * near).abs() * length;
+    let outer = around(&base, cylinder(28.0, Side::Outer), [None; 2], 3.0).unwrap();
+    assert!((outer.mesh.volume() / volume(28.0, 31.0, 80.0) - 1.0).abs() < 0.002);
+    let inner = around(&base, cylinder(20.0, Side::Inner), [Some(30.0), Some(500.0)], 2.0).unwrap();
+    assert!((inner.mesh.volume() / volume(20.0, 18.0, 60.0) - 1.0).abs() < 0.002);
+    assert!(matches!(inner.chart, Chart::Cylinder(Cylinder { side: Side::Inner, .. })));
+    let nothing = around(&base, cylinder(20.0, Side::Outer), [None; 2], 2.0).unwrap_err().to_string();
+    assert!(nothing.contains("20 mm from the axis, facing outwards"), "{nothing}");
+}
+
+#[test]
+fn a_shaft_with_flanges_is_clad_between_them() {
+    let shaft = bead_part::example::find("shaft").unwrap().mesh();
+    let bar = Cylinder { axis: DVec3::Z, through: DVec3::ZERO, radius: 25.0, side: Side::Outer, seam: 180.0 };
+    let gaps = around(&shaft, bar, [None; 2], 2.0).unwrap_err();
+    let [a, b, c] = [[0.0, 30.0], [60.0, 105.0], [127.0, 160.0]];
+    assert_eq!(gaps, CladdingError::Gaps { stretches: vec![a, b, c] });
+    let between = around(&shaft, bar, [Some(40.0), Some(110.0)], 2.0).unwrap().mesh.bounds();
+    assert!((between.0.z - 60.0).abs() < 1e-9 && (between.1.z - 105.0).abs() < 1e-9, "{between:?}");
+}
