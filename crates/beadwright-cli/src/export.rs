@@ -5,6 +5,7 @@ use anyhow::Context;
 use beadwright::export::{self, Beads, FORMATS, LAYER_FORMATS, LayerFormat};
 use beadwright::heat::{self, HeatSettings, History};
 use beadwright::layer::Layer;
+use beadwright::plan::unrolled_once;
 use beadwright::plan_file::PlanFile;
 use beadwright::profile::Profile;
 use std::io::Write;
@@ -52,7 +53,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             !standard || arguments.layer.is_some(),
             "--output -: one layer is drawn there; --layer says which"
         );
-        return drawings(arguments, plan, format);
+        return drawings(arguments, plan, &source.profile(&arguments.wanted)?, format);
     }
     let format = export::format(&extension).with_context(|| {
         let known = FORMATS
@@ -84,9 +85,11 @@ fn heat_of(plan: &PlanFile, profile: &Profile) -> anyhow::Result<Option<History>
 }
 
 /// One layer in the file, or each in one of its own.
-fn drawings(arguments: &Arguments, plan: &PlanFile, format: &LayerFormat) -> anyhow::Result<()> {
+fn drawings(arguments: &Arguments, plan: &PlanFile, profile: &Profile, format: &LayerFormat) -> anyhow::Result<()> {
     let mut out = say::done(file::is_standard(&arguments.output));
-    let write = |path: &Path, layer: &Layer| -> anyhow::Result<()> { file::write(path, &(format.write)(layer)?) };
+    let write = |path: &Path, layer: &Layer| -> anyhow::Result<()> {
+        file::write(path, &(format.write)(&unrolled_once(layer, profile))?)
+    };
     if let Some(number) = arguments.layer {
         let layer = number.checked_sub(1).and_then(|index| plan.layers.get(index));
         let layer =

@@ -469,7 +469,8 @@ impl Sink for Files<'_> {
     fn layer(&mut self, layer: Layer) -> anyhow::Result<()> {
         if self.pictures.contains(&(layer.index + 1)) {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
-            self.folder.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&layer, &title))?;
+            let drawn = plan::drawn(&layer, self.profile);
+            self.folder.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&drawn, &title))?;
         }
         let Selection { from: index, pass, .. } = self.selection;
         anyhow::ensure!(

@@ -341,7 +341,7 @@ fn piled(layers: &[Layer], settings: &DepositSettings, mean: f64, degrees: f64) 
     for (k, layer) in layers.iter().enumerate() {
         let strokes: Vec<_> = layer.passes.iter().flat_map(|pass| strokes(pass, &settings.nominal)).collect();
         let rows = field::bands(&strokes, &grid, |band| band.heights);
-        let (rows, mask): (Vec<f64>, _) = (rows.concat(), Mask::new(&layer.islands, settings, &grid));
+        let (rows, mask): (Vec<f64>, _) = (rows.concat(), Mask::new(layer, settings, &grid));
         let core = |row: usize| mask.core(row).iter().flat_map(|c| c.start..c.end).map(move |column| (column, row));
         let index = |(column, row): (usize, usize)| row * grid.columns + column;
         for at in (0..grid.rows).flat_map(core).map(index) {

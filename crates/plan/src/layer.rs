@@ -66,6 +66,8 @@ pub struct Layer {
     pub half: Option<Half>,
     /// Outlines of the slice.
     pub islands: Vec<Polygon>,
+    /// Where it goes on around an axis beyond the edges at which it is cut open: metal there is not outside the part.
+    pub beyond: Vec<Polygon>,
     /// Passes in deposition order; the arc is off between them.
     pub passes: Vec<Pass>,
     /// Whether the arc burns before and after them.

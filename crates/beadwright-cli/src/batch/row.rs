@@ -97,7 +97,7 @@ impl Sink for Kept<'_> {
     fn layer(&mut self, layer: Layer) -> anyhow::Result<()> {
         if self.pictures && layer.index == self.middle {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
-            self.picture = Some(report::svg::layer(&layer, &title));
+            self.picture = Some(report::svg::layer(&plan::drawn(&layer, self.profile), &title));
         }
         if let Some(judge) = &mut self.judge {
             judge.layer(&plan::welded_alone(&layer, self.profile));

@@ -8,6 +8,7 @@ use crate::steps::Looked;
 use crate::view::Mode;
 use crate::view2d::{Drawing, Named, View2d};
 use crate::view3d::LayerBeads;
+use beadwright::plan::Bands;
 use eframe::egui::{CentralPanel, Ui};
 
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
@@ -56,8 +57,10 @@ pub(super) fn flat(
 ) -> Option<Option<(usize, usize)>> {
     let layer = plan.layer(state.last)?;
     let shown = |beads: &LayerBeads| beads.pieces_of((state.progress * beads.len() as f64).ceil() as usize);
+    let bands = plan.profile.as_ref().and_then(|profile| Bands::of_layer(layer, profile));
     let subject = Drawing {
         layer,
+        bands: bands.as_ref(),
         judgement: plan.judgements.get(state.last),
         steps: (looked.of(state.last), words.steps),
         pieces: plan.scene.layer(state.last).map_or(0, |beads| shown(beads)),

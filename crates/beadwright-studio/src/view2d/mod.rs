@@ -16,6 +16,8 @@ pub use steps::Named;
 use crate::steps::Steps;
 use beadwright::deposit::Judgement;
 use beadwright::layer::Layer;
+use beadwright::pass::{Pass, Segment};
+use beadwright::plan::Bands;
 use beadwright::planar::Bounds;
 use eframe::egui::{
     self, Align2, Color32, FontId, Pos2, Rect, Role, Sense, Stroke, TextureHandle, TextureOptions, Ui, WidgetInfo,
@@ -63,6 +65,8 @@ impl Default for Show {
 pub struct Drawing<'a> {
     /// The layer.
     pub layer: &'a Layer,
+    /// Where passes lie that go around an axis more than once.
+    pub bands: Option<&'a Bands>,
     /// What the deposit model says about it.
     pub judgement: Option<&'a Arc<Judgement>>,
     /// The steps of the strategy, island by island, and what their colours mean.
@@ -153,7 +157,7 @@ impl View2d {
     pub fn show(&mut self, ui: &mut Ui, subject: Drawing<'_>, show: Show, label: &str) -> Done {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
-        let bounds = bounds(subject.layer);
+        let bounds = bounds(&subject);
         let mut eye = self.eye.unwrap_or_else(|| Eye::fitting(&bounds, rect));
         move_eye(&mut eye, ui, &response, rect);
         if response.double_clicked() {
@@ -186,13 +190,13 @@ impl View2d {
             pen.note(Align2::RIGHT_BOTTOM, &format!("x {:.2}  y {:.2} mm", at.x, at.y));
         }
         let clicked = response.clicked().then_some(at).flatten();
-        self.click(clicked, subject.layer)
+        self.click(clicked, &subject)
     }
 
-    fn click(&mut self, at: Option<DVec2>, layer: &Layer) -> Done {
+    fn click(&mut self, at: Option<DVec2>, subject: &Drawing<'_>) -> Done {
         let Some(at) = at else { return Done::default() };
         if !self.measuring {
-            return Done { picked: Some(nearest(layer, at)) };
+            return Done { picked: Some(nearest(subject, at)) };
         }
         if self.measure.len() == 2 {
             self.measure.clear();
@@ -232,9 +236,18 @@ impl View2d {
     }
 }
 
-fn bounds(layer: &Layer) -> Bounds {
+impl Drawing<'_> {
+    /// The pieces of a pass, each where it lies on the layer as it is unrolled once.
+    fn pieces<'p>(&'p self, pass: &'p Pass) -> impl Iterator<Item = Segment> + 'p {
+        pass.segments().map(|piece| self.bands.map_or(piece, |bands| bands.piece(piece)))
+    }
+}
+
+fn bounds(subject: &Drawing<'_>) -> Bounds {
+    let layer = subject.layer;
     let outlines = layer.islands.iter().flat_map(|island| island.outer.points().iter().copied());
-    let points = layer.passes.iter().flat_map(|pass| pass.points.iter().map(|p| p.truncate()));
+    let pieces = layer.passes.iter().flat_map(|pass| subject.pieces(pass));
+    let points = pieces.flat_map(|piece| [piece.from.truncate(), piece.to.truncate()]);
     Bounds::of(outlines.chain(points)).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ONE })
 }
 
@@ -255,8 +268,9 @@ fn move_eye(eye: &mut Eye, ui: &Ui, response: &egui::Response, rect: Rect) {
 }
 
 /// The pass under a point, with its segment.
-fn nearest(layer: &Layer, at: DVec2) -> Option<(usize, usize)> {
-    let pieces = layer.passes.iter().enumerate().flat_map(|(p, pass)| pass.segments().enumerate().map(move |s| (p, s)));
+fn nearest(subject: &Drawing<'_>, at: DVec2) -> Option<(usize, usize)> {
+    let passes = subject.layer.passes.iter().enumerate();
+    let pieces = passes.flat_map(|(p, pass)| subject.pieces(pass).enumerate().map(move |s| (p, s)));
     let distances = pieces.filter_map(|(pass, (i, s))| {
         let (a, b) = (s.from.truncate(), s.to.truncate());
         let along = ((at - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);

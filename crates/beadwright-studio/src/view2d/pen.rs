@@ -61,9 +61,10 @@ impl Pen<'_> {
         let Some((pass, piece)) = subject.chosen else { return };
         let Some(pass) = subject.layer.passes.get(pass) else { return };
         let ink = ink(palette::ACCENT);
-        let points = pass.points.iter().map(|p| self.at(p.truncate())).collect();
+        let pieces = subject.pieces(pass).flat_map(|piece| [piece.from, piece.to]);
+        let points = pieces.map(|p| self.at(p.truncate())).collect();
         self.painter.add(Shape::line(points, Stroke::new(2.5, ink)));
-        if let Some(segment) = pass.segments().nth(piece) {
+        if let Some(segment) = subject.pieces(pass).nth(piece) {
             let line = [segment.from, segment.to].map(|p| self.at(p.truncate()));
             self.painter.line_segment(line, Stroke::new(6.0, ink));
         }
@@ -72,7 +73,7 @@ impl Pen<'_> {
     pub(super) fn passes(&self, subject: &Drawing<'_>, show: Show) {
         let mut left = subject.pieces;
         let shown = subject.layer.passes.iter().map(|pass| {
-            let pieces: Vec<_> = pass.segments().take(left).collect();
+            let pieces: Vec<_> = subject.pieces(pass).take(left).collect();
             left -= pieces.len();
             (pass.kind, pieces)
         });

@@ -2,6 +2,7 @@
 
 use super::{Check, Finding, Subject};
 use crate::pass::Segment;
+use crate::plan::Bands;
 use planar::{Join, Region};
 
 pub(super) const CHECK: Check = Check {
@@ -19,9 +20,11 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     for layer in subject.layers.iter().filter(|l| !l.islands.is_empty()) {
         let near = Region::from_normalised(layer.islands.clone()).offset(room, Join::ROUND);
+        let bands = Bands::of_layer(layer, subject.profile);
         for (i, pass) in layer.passes.iter().enumerate() {
+            let once = |s: Segment| bands.as_ref().map_or(s, |bands| bands.piece(s));
             let outside = |s: &Segment| s.from.is_finite() && outside(&near, s, width);
-            let pieces: Vec<Segment> = pass.segments().filter(outside).collect();
+            let pieces: Vec<Segment> = pass.segments().map(once).filter(outside).collect();
             if let Some(first) = pieces.first() {
                 let length: f64 = pieces.iter().map(Segment::length).sum();
                 let text = format!("the arc is on outside the part, on pieces of {length:.1} mm.");

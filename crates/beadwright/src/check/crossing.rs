@@ -4,7 +4,9 @@ use super::{Check, Finding, Subject};
 use crate::fill::sound;
 use crate::layer::Layer;
 use crate::pass::Pass;
+use crate::plan::Bands;
 use glam::DVec2;
+use std::borrow::Cow;
 
 pub(super) const CHECK: Check = Check {
     name: "crossing",
@@ -16,17 +18,21 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    subject.layers.iter().copied().flat_map(in_layer).collect()
+    subject.layers.iter().flat_map(|layer| in_layer(layer, subject)).collect()
 }
 
-fn in_layer(layer: &Layer) -> Vec<Finding> {
-    let lines: Vec<Vec<DVec2>> = layer.passes.iter().map(Pass::line).collect();
+fn in_layer(layer: &Layer, subject: &Subject<'_>) -> Vec<Finding> {
+    // Turns of one pass lie side by side.
+    let cut = Bands::of_layer(layer, subject.profile).map(|bands| bands.cut(&layer.passes));
+    let (passes, of) = cut.map_or((Cow::Borrowed(&layer.passes), None), |(passes, of)| (Cow::Owned(passes), Some(of)));
+    let lines: Vec<Vec<DVec2>> = passes.iter().map(Pass::line).collect();
+    let pass = |line: usize| of.as_ref().map_or(line, |of| of[line]);
     let mut last = None;
     // One finding per pass.
     let fresh = |found: &(usize, usize, DVec2)| last.replace(found.0) != Some(found.0);
     let finding = |(i, other, place): (usize, usize, DVec2)| {
-        let text = format!("it crosses pass {}.", other + 1);
-        CHECK.of_pass(layer, i, Some(place.extend(layer.z)), text)
+        let text = format!("it crosses pass {}.", pass(other) + 1);
+        CHECK.of_pass(layer, pass(i), Some(place.extend(layer.z)), text)
     };
     sound::crossings(&lines).filter(fresh).map(finding).collect()
 }

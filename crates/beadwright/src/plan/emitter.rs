@@ -2,11 +2,12 @@
 //! lies below, keeps the limits of heat, and warns of what a layer cannot be welded on.
 
 use super::charted::Across;
-use super::cover::Cover;
+use super::cover::{Cover, Reach};
 use super::filled::Filled;
 use super::helix::{Helix, NoTurn};
 use super::milled::undersize;
 use super::support::Support;
+use super::turns::Bands;
 use super::warm::{self, Heat};
 use super::{Sink, level_layers, relight, welded};
 use crate::deposit::Stack;
@@ -19,6 +20,7 @@ use crate::pass::{Pass, PassKind};
 use crate::profile::Profile;
 use crate::slice::{Half, Slice};
 use crate::warning::{Warning, WarningKind, Warnings};
+use crate::wedge::Wedge;
 use glam::DVec2;
 use planar::{Polygon, Region};
 use std::borrow::Cow;
@@ -76,15 +78,7 @@ impl<S: Sink> Emitter<'_, S> {
             wedge.paired(&mut layer.passes, self.profile.usual_height(height));
             layer.warnings.extend(wedge.doubt(&layer));
         }
-        if self.profile.is_level() {
-            level_layers::share(&mut layer, self.grown.as_ref(), wedge.as_ref(), self.profile);
-        }
-        if !reaches.is_empty() {
-            let cover = Cover::of_layer(&layer, &reaches, self.profile);
-            layer.planned_area = cover.area;
-            let warning = |(kind, place, size)| Warning { kind, layer: index, place, size };
-            layer.warnings.extend(cover.doubts.into_iter().map(warning));
-        }
+        self.share(&mut layer, &reaches, wedge.as_ref());
         let undersize = milled.and_then(|part| undersize(&layer, &part, self.profile));
         layer.warnings.extend(undersize);
         if let Some(helix) = &mut self.helix {
@@ -111,6 +105,28 @@ impl<S: Sink> Emitter<'_, S> {
             grown.weld(&welded(&layer, self.profile).passes);
         }
         self.sink.layer(layer)
+    }
+
+    /// Shares out the metal of a level layer, and measures what it covers where `reaches` says what beads reach.
+    fn share(&self, layer: &mut Layer, reaches: &[Option<Reach>], wedge: Option<&Wedge<'_>>) {
+        let bands = Bands::of_layer(layer, self.profile);
+        let of = bands.as_ref().map(|bands| {
+            let (pieces, of) = bands.cut(&layer.passes);
+            layer.passes = pieces;
+            of
+        });
+        if self.profile.is_level() {
+            level_layers::share(layer, self.grown.as_ref(), wedge, self.profile);
+        }
+        if !reaches.is_empty() {
+            let cover = Cover::of_layer(layer, reaches, self.profile);
+            layer.planned_area = cover.area;
+            let warning = |(kind, place, size)| Warning { kind, layer: layer.index, place, size };
+            layer.warnings.extend(cover.doubts.into_iter().map(warning));
+        }
+        if let Some((bands, of)) = bands.zip(of) {
+            layer.passes = bands.joined(std::mem::take(&mut layer.passes), &of);
+        }
     }
 
     /// Keeps the limits of `[interpass]`, warns where that is impossible, and widens beads by the heat that they find.

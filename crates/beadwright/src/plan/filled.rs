@@ -3,6 +3,8 @@
 use super::candidates;
 use super::cover::{Cover, Reach};
 use super::scan_lines::Planned;
+use super::turns;
+use crate::fill::around;
 use crate::fill::contour::rings_only;
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy, dot};
@@ -111,6 +113,7 @@ fn settings_of<'a>(layer: &'a Planned, profile: &'a Profile) -> FillSettings<'a>
     let mut settings = profile.fill_settings(layer.slice.index);
     settings.raster_angle = layer.raster_angle.unwrap_or(settings.raster_angle);
     settings.solid = layer.solid.as_ref();
+    settings.turn = turns::length_of_turn(&layer.slice, profile);
     settings
 }
 
@@ -134,7 +137,10 @@ fn fill_layer(
     for (i, island) in slice.islands.iter().enumerate() {
         let reach = Reach::of(island, strategy.narrowest(settings));
         let roomy = reach.area > 0.0 || strategy.welds_thin_walls() || island.holds_disc(settings.wall.thinnest / 2.0);
-        let mut own = if roomy {
+        let helix = around::helix(island, settings).map(|helix| Fill { stages: vec![vec![helix]], fixed_order: true });
+        let mut own = if let Some(helix) = helix {
+            helix
+        } else if roomy {
             sound_fill(fill(i, island), island, strategy, profile, settings, reach.area, &mut slice.warnings)
         } else {
             Fill::default()
@@ -158,7 +164,7 @@ fn fill_layer(
         if is_left_out {
             slice.warnings.push(warning((WarningKind::IslandTooSmall, middle(island), island.area())));
         } else if !profile.is_level() {
-            let cover = Cover::of(&own, island, profile, &reach);
+            let cover = Cover::of(&turns::fill_once(&own, island, settings.turn, profile), island, profile, &reach);
             planned_area += cover.area;
             slice.warnings.extend(cover.doubts.into_iter().map(warning));
         }

@@ -1,5 +1,6 @@
 //! How the deposit model treats plans made with a profile.
 
+use super::turns::unrolled_once;
 use crate::chart::Chart;
 use crate::deposit::{DepositSettings, Nominal};
 use crate::layer::Layer;
@@ -18,11 +19,15 @@ pub fn even<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
 }
 
 /// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
-/// profile has them, and [`even`].
+/// profile has them, [`even`] and [`unrolled_once`].
 pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
-    match even(layer, profile) {
+    let welded = match even(layer, profile) {
         Cow::Borrowed(layer) => as_welded(layer, profile),
         Cow::Owned(layer) => Cow::Owned(as_welded(&layer, profile).into_owned()),
+    };
+    match welded {
+        Cow::Borrowed(layer) => unrolled_once(layer, profile),
+        Cow::Owned(layer) => Cow::Owned(unrolled_once(&layer, profile).into_owned()),
     }
 }
 

@@ -27,6 +27,7 @@
 //! | `row` | the layers of parts or bodies that are welded one after another, as those of one plan |
 //! | `reasons` | why a plan's volume differs from the part's, or is nothing |
 //! | [`preview`] | one layer ahead of the others |
+//! | `turns` | passes that go around an axis more than once |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
 //! | [`stock`] | a part becomes its preform, which is planned in its place |
 //! | `support` | whether passes lie on the metal below |
@@ -58,6 +59,7 @@ mod row;
 mod scan_lines;
 pub mod stock;
 mod support;
+pub(crate) mod turns;
 pub(crate) mod warm;
 mod wedges;
 
@@ -67,6 +69,7 @@ pub use parts::{parts_into, torch_of};
 pub use preview::preview;
 pub use result::{Collect, Header, Plan, PlanError, Sink, Summary};
 pub use scan_lines::{ToFill, raster_angle};
+pub use turns::{Bands, drawn, is_jump, unrolled_once};
 
 use crate::deposit::Stack;
 use crate::fill::Strategy;

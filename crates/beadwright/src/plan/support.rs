@@ -1,6 +1,7 @@
 //! Whether passes lie on metal, judged by the footprints of the passes below.
 
 use super::charted::Across;
+use super::turns::{Bands, unrolled_once};
 use crate::fill::line_index::LineIndex;
 use crate::layer::Layer;
 use crate::pass::Pass;
@@ -120,6 +121,8 @@ impl Support {
             let (metal, there) = (Metal::of(&self.passes, width), self.there(layer, profile));
             let below = if solid { &there[..] } else { &[&there[..], &self.islands[..]].concat()[..] };
             let within = |p: DVec2| below.iter().any(|island| island.contains(p));
+            let bands = Bands::of_layer(layer, profile);
+            let once = |p: DVec2| bands.as_ref().map_or(p, |bands| bands.place(p));
             let below = |p: DVec2| match metal.is_at(p, 0.0) || within(p) {
                 true => Below::Metal,
                 false if metal.is_at(p, CLEAR * width) => Below::Edge,
@@ -127,12 +130,12 @@ impl Support {
             };
             let bridge = if profile.prints() { f64::INFINITY } else { BRIDGE * width };
             let hanging: Vec<Option<Hanging>> =
-                layer.passes.iter().map(|pass| hanging(pass, width / SAMPLES, bridge, below)).collect();
+                layer.passes.iter().map(|pass| hanging(pass, width / SAMPLES, bridge, |p| below(once(p)))).collect();
             self.left_out = self.take_out(layer, &hanging, width);
         } else if !alike {
             self.left_out.clear();
         }
-        let passes = std::mem::replace(&mut self.passes, layer.passes.clone());
+        let passes = std::mem::replace(&mut self.passes, unrolled_once(layer, profile).passes.clone());
         self.before = (passes, std::mem::replace(&mut self.islands, layer.islands.clone()));
         self.middle = layer.middle();
         self.begun |= !layer.passes.is_empty();

@@ -1,6 +1,7 @@
 //! The section `[fill]`.
 
 use crate::bead::Overlap;
+use crate::fill::around::Around;
 use crate::fill::{ContourOrder, LineEnds, RasterSpacing, StrategyName};
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
@@ -55,6 +56,10 @@ pub struct FillSection {
     /// a boundary that they meet at a slant (`hooked`), which leaves fewer voids there.
     #[serde(default)]
     pub line_ends: LineEnds,
+    /// How islands are filled that go all around an axis (`layers.chart = "cylinder:…"`): cut open and filled by the strategy
+    /// (`open`, the default), or with one helix where both edges are rings (`helix`).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub around: Option<Around>,
     /// Minimum length of a pass, mm; shorter passes are left out with a warning, except an island's only pass.
     pub min_pass_length: f64,
     /// Whether `compound`, `hilbert` and `partition` lay the perimeters before the infill; default false.

@@ -401,6 +401,7 @@ impl Profile {
             hybrid: self.hybrid.settings(self.bead.width, self.stepover()),
             wall: self.wall.settings(self.bead.width),
             one_loop: self.one_loop.settings(self.bead.width),
+            turn: None,
             datum: DVec2::ZERO,
         }
     }

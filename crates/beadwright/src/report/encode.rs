@@ -21,6 +21,7 @@
 use crate::deposit::{Figures, Picture};
 use crate::layer::Layer;
 use crate::pass::{Along, Pass, PassKind};
+use crate::plan::is_jump;
 use crate::process::Process;
 use crate::warning::{Warning, WarningKind};
 use base64::Engine as _;
@@ -76,6 +77,7 @@ fn head(
     resolution: f64,
 ) -> [f64; HEAD] {
     let size = bounds.size();
+    let length = |pass: &Pass| pass.segments().filter(|s| !is_jump(s)).map(|s| s.length()).sum::<f64>();
     let seconds = |pass: &Pass| pass.segments().map(|s| s.length() / speed(s.pace)).sum::<f64>();
     let figures = figures.copied().unwrap_or_default();
     [
@@ -83,7 +85,7 @@ fn head(
         layer.height,
         layer.slice_area,
         layer.planned_area,
-        layer.passes.iter().map(Pass::length).sum(),
+        layer.passes.iter().map(length).sum(),
         layer.passes.iter().map(seconds).sum(),
         super::travels(layer).map(|(from, to)| from.distance(to)).sum(),
         layer.passes.len() as f64,

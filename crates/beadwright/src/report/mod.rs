@@ -44,7 +44,7 @@ use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::RepairReport;
 use crate::pass::{Pass, PassKind};
-use crate::plan::{Header, Summary};
+use crate::plan::{self, Header, Summary};
 use crate::profile::Profile;
 use crate::template;
 use glam::DVec2;
@@ -114,7 +114,11 @@ impl Report {
         if layer.index == self.header.extent.layers / 2 {
             self.middle = layer.clone();
         }
-        self.layers.push(encode::layer(layer, &self.profile.process, judgement.map(|j| &j.figures)));
+        self.layers.push(encode::layer(
+            &plan::drawn(layer, &self.profile),
+            &self.profile.process,
+            judgement.map(|j| &j.figures),
+        ));
         if !self.profile.layers.are_level() {
             self.lies.push(lie::lie(self.profile.layers.chart_of(layer), layer));
         }

@@ -6,6 +6,7 @@ mod adapt;
 mod arc_watch;
 mod architecture;
 mod arcs;
+mod around;
 mod as_built;
 mod attitude;
 mod baselines;

@@ -32,7 +32,7 @@ use field::{Band, Grid, Height};
 use glam::DVec2;
 use patch::Run;
 use picture::Canvas;
-use planar::{Bounds, Join, PerRow, Polygon, Region};
+use planar::{Bounds, Join, PerRow, Region};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -200,7 +200,7 @@ impl Judge {
         let strokes: Vec<Stroke> = layer.passes.iter().flat_map(|pass| stroke::strokes(pass, &nominal)).collect();
         let Some(grid) = grid_of(layer, &strokes, self.settings.step) else { return Judgement::nothing() };
         let eye = Eye {
-            mask: &Mask::new(&layer.islands, &self.settings, &grid),
+            mask: &Mask::new(layer, &self.settings, &grid),
             canvas: self.picture_pixels.map(|pixels| Canvas::new(&grid, pixels, &nominal)),
             patches: self.patches,
             nominal: &nominal,
@@ -317,15 +317,19 @@ pub struct Mask {
 }
 
 impl Mask {
-    /// The rows of a grid over the islands.
-    pub fn new(islands: &[Polygon], settings: &DepositSettings, grid: &Grid) -> Self {
-        let whole = Region::from_normalised(islands.to_vec());
+    /// The rows of a grid over the islands of a layer, and over what lies beyond them without being outside.
+    pub fn new(layer: &Layer, settings: &DepositSettings, grid: &Grid) -> Self {
+        let whole = Region::from_normalised(layer.islands.clone());
         let rows = |region: &Region| {
             let crossings = region.rows(grid.place(0, 0).y, grid.step, grid.rows);
             crossings.iter().map(|crossings| columns(crossings, grid)).collect()
         };
         let core = rows(&whole.offset(-RIM * settings.nominal.bead.width, Join::ROUND));
         let allowance = settings.machining_allowance;
+        let whole = match &layer.beyond[..] {
+            [] => whole,
+            beyond => whole.union(&Region::from_normalised(beyond.to_vec())),
+        };
         let allowed = if allowance > 0.0 { rows(&whole.offset(allowance, Join::ROUND)) } else { rows(&whole) };
         Self { core, allowed }
     }

@@ -137,7 +137,7 @@ impl Stack {
         self.weld(&layer.passes);
         let rim = RIM * self.settings.nominal.bead.width;
         let beside = DepositSettings { machining_allowance: rim, ..self.settings };
-        let mask = Mask::new(&layer.islands, &beside, &self.grid);
+        let mask = Mask::new(layer, &beside, &self.grid);
         for row in 0..self.grid.rows {
             let at = row * self.grid.columns;
             mask.allowed(row).iter().for_each(|c| self.wanted[at + c.start..at + c.end].fill(f32::NAN));

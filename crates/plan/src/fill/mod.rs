@@ -4,6 +4,7 @@
 //! *stages*: passes of one stage may be laid in any order, stages one after another.
 
 pub mod angle;
+pub mod around;
 pub mod compound;
 pub mod contour;
 pub mod coverage;
@@ -227,6 +228,8 @@ pub struct FillSettings<'a> {
     pub wall: wall::WallSettings,
     /// How loops are laid.
     pub one_loop: one_loop::LoopOptions,
+    /// Length of a turn of the layer around an axis, mm, where islands that go all around are filled with a helix.
+    pub turn: Option<f64>,
     /// A reference point, the same on all layers of a part; patterns that repeat over the layers are measured from it.
     pub datum: DVec2,
 }

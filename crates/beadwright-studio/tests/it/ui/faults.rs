@@ -37,7 +37,8 @@ fn slivers_draw_no_spikes() {
     let mut view = View2d::default();
     let draw = move |ui: &mut eframe::egui::Ui| {
         let (steps, pieces, nothing) = ((&[][..], Named::default()), 0, "nothing");
-        let drawing = Drawing { layer: &layer, judgement: None, steps, pieces, chosen: None, scale: None, nothing };
+        let drawing =
+            Drawing { layer: &layer, bands: None, judgement: None, steps, pieces, chosen: None, scale: None, nothing };
         view.show(ui, drawing, Show::default(), "layer");
     };
     let mut harness = Harness::builder().with_size([600.0, 600.0]).build_ui(draw);

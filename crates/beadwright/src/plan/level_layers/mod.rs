@@ -17,9 +17,10 @@ pub(super) use share::share;
 use super::emitter::lifted;
 use super::filled::{Filled, fill_planned};
 use super::scan_lines::Planned;
+use super::turns;
 use super::{MAX_LAYERS, deposit_settings, middle};
 use crate::deposit::Stack;
-use crate::fill::Strategy;
+use crate::fill::{Fill, Strategy};
 use crate::layer::{self, Layer};
 use crate::model::Mesh;
 use crate::profile::Profile;
@@ -76,11 +77,14 @@ fn are_alike(a: &Slice, b: &Slice) -> bool {
 
 /// A slice with its passes. Which way scan lines run hardly matters for the metal.
 fn filled(slice: Slice, strategy: &dyn Strategy, profile: &Profile, middle: DVec2) -> Layer {
+    let turn = turns::length_of_turn(&slice, profile);
     let planned = Planned { slice, raster_angle: None, solid: None };
     let Filled { slice, fills, .. } = fill_planned(&planned, strategy, profile, middle);
     let laid = slice.islands.into_iter().zip(&fills).filter(|(_, fill)| !fill.is_empty());
-    let islands = laid.map(|(island, _)| island).collect();
-    let paths = fills.iter().flat_map(|fill| fill.stages.iter().flatten().cloned()).collect();
+    let once = |(island, fill)| turns::fill_once(fill, &island, turn, profile).into_owned();
+    let (islands, fills): (Vec<Polygon>, Vec<Fill>) =
+        laid.map(|(island, fill)| (island.clone(), once((island, fill)))).unzip();
+    let paths = fills.into_iter().flat_map(|fill| fill.stages.into_iter().flatten()).collect();
     let height = profile.layers.height;
     let passes = lifted(paths, slice.index, (0.0, height), profile);
     Layer { height, islands, passes, ..Layer::default() }

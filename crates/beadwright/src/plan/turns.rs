@@ -1,0 +1,236 @@
+//! Passes that go around an axis more than once, on the layer as it is unrolled once: their points run on turn after turn, and
+//! what judges or draws a layer sees each turn where its metal lies.
+
+use super::cover;
+use crate::chart::Chart;
+use crate::fill::{Fill, Path, around};
+use crate::layer::Layer;
+use crate::pass::{Along, Pass, Segment};
+use crate::profile::Profile;
+use crate::slice::{Slice, middle};
+use glam::{DVec2, DVec3};
+use planar::{Bounds, Polygon, Ring};
+use std::borrow::Cow;
+
+/// Pieces shorter than this are nothing, mm.
+const NOTHING: f64 = 1e-6;
+
+/// Length of a turn of a slice, mm, where islands that go all around are filled with a helix.
+pub(super) fn length_of_turn(slice: &Slice, profile: &Profile) -> Option<f64> {
+    profile.fill.around.filter(|around| *around == around::Around::Helix)?;
+    turn(&profile.layers.chart, middle(slice.z, slice.height, slice.half))
+}
+
+/// Length of a turn of the layer with this middle, mm; `None` where layers do not go on turn after turn.
+fn turn(chart: &Chart, middle: f64) -> Option<f64> {
+    let sheet = chart.sheet(middle);
+    sheet.turned(DVec2::ZERO, 1.0).map(|end| end.x.abs())
+}
+
+/// A layer of which every pass lies within one turn: those that go on are cut where the next turn begins. Where there are none,
+/// the layer as it is.
+pub fn unrolled_once<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
+    match Bands::of_layer(layer, profile) {
+        Some(bands) => {
+            let (passes, beyond) = (bands.cut(&layer.passes).0, bands.beyond(profile.bead.width));
+            Cow::Owned(Layer { passes, beyond, ..layer.clone() })
+        }
+        None => Cow::Borrowed(layer),
+    }
+}
+
+/// A layer to be drawn as it is unrolled once: passes that go around more than once jump back where the next turn begins, along
+/// the bead that they have just laid and with next to no width.
+pub fn drawn<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
+    let Some(bands) = Bands::of_layer(layer, profile) else { return Cow::Borrowed(layer) };
+    let (pieces, of) = bands.cut(&layer.passes);
+    let mut passes: Vec<Pass> = Vec::with_capacity(layer.passes.len());
+    for (piece, index) in pieces.into_iter().zip(of) {
+        match passes.get_mut(index) {
+            Some(pass) => {
+                let (end, start) = (pass.end().unwrap_or_default(), piece.start().unwrap_or_default());
+                let jump = Segment { from: end, to: start, width: HAIR, pace: AT_ONCE };
+                let segments: Vec<Segment> = pass.segments().chain([jump]).chain(piece.segments()).collect();
+                *pass = of_segments(pass, &segments);
+            }
+            None => passes.push(piece),
+        }
+    }
+    Cow::Owned(Layer { passes, ..layer.clone() })
+}
+
+/// Width (mm) and pace (mm/s) of a jump in a picture.
+const HAIR: f64 = 0.001;
+const AT_ONCE: f64 = 1e6;
+
+/// Whether a piece of a drawn pass is no bead but the jump to the next turn.
+pub fn is_jump(piece: &Segment) -> bool {
+    piece.width <= HAIR
+}
+
+/// What fills an island, in the same way; `turn` in mm.
+pub(super) fn fill_once<'a>(fill: &'a Fill, island: &Polygon, turn: Option<f64>, profile: &Profile) -> Cow<'a, Fill> {
+    let islands = std::slice::from_ref(island);
+    let Some(bands) = turn.and_then(|turn| Bands::of(islands, turn, profile)) else { return Cow::Borrowed(fill) };
+    let flat = |path: &Path| Pass {
+        kind: path.kind,
+        closed: path.closed,
+        points: path.points.iter().map(|p| p.extend(0.0)).collect(),
+        width: path.width.clone(),
+        pace: Along::Same(1.0),
+        wait: 0.0,
+    };
+    let once = |stage: &Vec<Path>| {
+        let passes: Vec<Pass> = stage.iter().map(flat).collect();
+        bands.cut(&passes).0.iter().map(cover::path).collect()
+    };
+    Cow::Owned(Fill { stages: fill.stages.iter().map(once).collect(), ..*fill })
+}
+
+/// The islands of a layer that go all around, with passes that do so more than once.
+pub struct Bands {
+    bands: Vec<Bounds>,
+    /// Length of a turn, mm.
+    turn: f64,
+}
+
+impl Bands {
+    /// Those of a layer; `None` where no pass goes around more than once.
+    pub fn of_layer(layer: &Layer, profile: &Profile) -> Option<Self> {
+        let turn = turn(profile.layers.chart_of(layer), layer.middle())?;
+        Self::of(&layer.islands, turn, profile).filter(|bands| layer.passes.iter().any(|pass| bands.goes_on(pass)))
+    }
+
+    /// Those of some islands; `turn` in mm.
+    pub(crate) fn of(islands: &[Polygon], turn: f64, profile: &Profile) -> Option<Self> {
+        let width = profile.bead.width;
+        // Beads may reach beyond the outline, and may be moved there.
+        let beyond = DVec2::new(0.0, profile.fill.machining_allowance);
+        let band = |island| around::band(island, turn, width);
+        let wider = |band: Bounds| Bounds { min: band.min - beyond, max: band.max + beyond };
+        let bands: Vec<Bounds> = islands.iter().filter_map(band).map(wider).collect();
+        (!bands.is_empty()).then_some(Self { bands, turn })
+    }
+
+    fn goes_on(&self, pass: &Pass) -> bool {
+        self.around(pass).is_some_and(|band| {
+            pass.points.iter().any(|p| p.x < band.min.x - 2.0 * OVERLAP || p.x > band.max.x + 2.0 * OVERLAP)
+        })
+    }
+
+    /// The island around which a pass goes.
+    fn around(&self, pass: &Pass) -> Option<&Bounds> {
+        let start = pass.start().filter(|start| start.is_finite())?;
+        self.band_at(start.truncate())
+    }
+
+    fn band_at(&self, p: DVec2) -> Option<&Bounds> {
+        self.bands.iter().find(|band| (band.min.y..=band.max.y).contains(&p.y))
+    }
+
+    /// How many turns a place of a band lies after its beginning.
+    fn turns(&self, band: &Bounds, x: f64) -> f64 {
+        ((x - band.min.x) / self.turn).floor()
+    }
+
+    /// A piece of a pass on the layer as it is unrolled once, as a whole.
+    pub fn piece(&self, piece: Segment) -> Segment {
+        let middle = piece.from.midpoint(piece.to).truncate();
+        let on = (self.place(middle) - middle).extend(0.0);
+        Segment { from: piece.from + on, to: piece.to + on, ..piece }
+    }
+
+    /// A place of a pass on the layer as it is unrolled once.
+    pub(crate) fn place(&self, p: DVec2) -> DVec2 {
+        let on = |band: &Bounds| p - DVec2::new(self.turns(band, p.x) * self.turn, 0.0);
+        self.band_at(p).map_or(p, on)
+    }
+
+    /// Passes cut where they come to the next turn, each piece on the layer as it is unrolled once; and for each piece, the
+    /// index of the pass that it is of.
+    pub(crate) fn cut(&self, passes: &[Pass]) -> (Vec<Pass>, Vec<usize>) {
+        let pieces = |(index, pass): (usize, &Pass)| {
+            let band = self.around(pass).filter(|_| self.goes_on(pass));
+            let pieces = band.map_or_else(|| vec![pass.clone()], |band| self.pieces(pass, band));
+            pieces.into_iter().map(move |piece| (piece, index)).collect::<Vec<_>>()
+        };
+        passes.iter().enumerate().flat_map(pieces).unzip()
+    }
+
+    fn pieces(&self, pass: &Pass, band: &Bounds) -> Vec<Pass> {
+        let mut pieces: Vec<(f64, Vec<Segment>)> = Vec::new();
+        for segment in pass.segments().flat_map(|segment| self.within_turns(segment, band)) {
+            let turns = self.turns(band, segment.from.x.midpoint(segment.to.x));
+            let back = DVec3::new(turns * self.turn, 0.0, 0.0);
+            let segment = Segment { from: segment.from - back, to: segment.to - back, ..segment };
+            match pieces.last_mut() {
+                Some((same, piece)) if *same == turns => piece.push(segment),
+                _ => pieces.push((turns, vec![segment])),
+            }
+        }
+        let waits = std::iter::once(pass.wait).chain(std::iter::repeat(0.0));
+        pieces.iter().zip(waits).map(|((_, piece), wait)| Pass { wait, ..of_segments(pass, piece) }).collect()
+    }
+
+    /// A piece cut at the seams that it crosses.
+    fn within_turns(&self, segment: Segment, band: &Bounds) -> Vec<Segment> {
+        let [from, to] = [segment.from.x, segment.to.x];
+        let (low, high) = (from.min(to) + NOTHING, from.max(to) - NOTHING);
+        let first = self.turns(band, low) as i64 + 1;
+        let seams = (first..=self.turns(band, high) as i64).map(|k| band.min.x + k as f64 * self.turn);
+        let mut cuts: Vec<f64> = seams.map(|seam| (seam - from) / (to - from)).collect();
+        if to < from {
+            cuts.reverse();
+        }
+        let ends = std::iter::once(0.0).chain(cuts).chain([1.0]).collect::<Vec<_>>();
+        let at = |part: f64| segment.from.lerp(segment.to, part);
+        ends.windows(2).map(|ends| Segment { from: at(ends[0]), to: at(ends[1]), ..segment }).collect()
+    }
+
+    /// Strips beyond both ends of each island, as wide as a bead: the ends of a turn reach there, and are metal of the next one.
+    fn beyond(&self, width: f64) -> Vec<Polygon> {
+        let strip = |from: f64, band: &Bounds| {
+            let (low, high) = (DVec2::new(from, band.min.y), DVec2::new(from + width, band.max.y));
+            Polygon::simple(Ring::new(vec![low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)]))
+        };
+        self.bands.iter().flat_map(|band| [strip(band.min.x - width, band), strip(band.max.x, band)]).collect()
+    }
+
+    /// What [`Self::cut`] made of passes put together again, whatever has happened to the pieces meanwhile; `of` says which
+    /// belong together.
+    pub(crate) fn joined(&self, pieces: Vec<Pass>, of: &[usize]) -> Vec<Pass> {
+        let mut joined: Vec<(usize, Pass)> = Vec::new();
+        for (piece, &index) in pieces.into_iter().zip(of) {
+            match joined.last_mut() {
+                Some((same, pass)) if *same == index => self.append(pass, &piece),
+                _ => joined.push((index, piece)),
+            }
+        }
+        joined.into_iter().map(|(_, pass)| pass).collect()
+    }
+
+    /// Continues a pass with its next turn. They meet halfway if one of them was moved.
+    fn append(&self, pass: &mut Pass, next: &Pass) {
+        let (Some(end), Some(start)) = (pass.end(), next.start()) else { return };
+        let on = DVec3::new(((end.x - start.x) / self.turn).round() * self.turn, 0.0, 0.0);
+        let mut segments: Vec<Segment> = pass.segments().collect();
+        let meet = end.midpoint(start + on);
+        segments.iter_mut().last().into_iter().for_each(|last| last.to = meet);
+        let more = next.segments().map(|s| Segment { from: s.from + on, to: s.to + on, ..s });
+        let more = more.enumerate().map(|(i, s)| if i == 0 { Segment { from: meet, ..s } } else { s });
+        segments.extend(more);
+        *pass = Pass { wait: pass.wait, ..of_segments(pass, &segments) };
+    }
+}
+
+/// Islands cut open overlap themselves by about this, mm.
+const OVERLAP: f64 = 0.01;
+
+/// An open pass along pieces that follow one another.
+fn of_segments(pass: &Pass, pieces: &[Segment]) -> Pass {
+    let points = pieces.first().map(|s| s.from).into_iter().chain(pieces.iter().map(|s| s.to)).collect();
+    // A value holds from its point to the next.
+    let along = |value: fn(&Segment) -> f64| Along::Each(pieces.iter().chain(pieces.last()).map(value).collect());
+    let (width, pace) = (along(|s| s.width), along(|s| s.pace));
+    Pass { kind: pass.kind, closed: false, points, width, pace, wait: pass.wait }
+}
