@@ -3,13 +3,14 @@
 use crate::{file, model, profile, progress, say};
 use anyhow::Context;
 use beadwright::chart::Chart;
+use beadwright::chart::warp::WarpError;
 use beadwright::cladding::{self, Cladding, CladdingError};
-use beadwright::model::outline;
-use beadwright::model::stl;
-use beadwright::profile::Body;
+use beadwright::model::{Mesh, outline, stl};
+use beadwright::profile::{Body, Profile};
+use beadwright::task::Task;
 use glam::DVec3;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -54,37 +55,65 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let is_base =
         arguments.output.canonicalize().is_ok_and(|path| model.canonicalize().is_ok_and(|model| model == path));
     anyhow::ensure!(!is_base, "{}: that is the base; give the cladding a file of its own", arguments.output.display());
+    anyhow::ensure!(
+        !arguments.model.placing.moves(),
+        "the cladding is written in the coordinates of the base's file, so the base is clad as it lies there: --turn, --shift, --scale \
+         and the like are for `plan`, where they move both"
+    );
     let (task, bar) = progress::task()?;
     let base = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?.mesh;
-    let thickness = f64::from(arguments.layers) * profile.layers.height;
-    let context = || model.display().to_string();
-    let cladding = match &arguments.around {
-        Some(around) => {
-            let chart: Chart = format!("cylinder:{around}").parse().context("--around")?;
-            let Chart::Cylinder(cylinder) = chart else { anyhow::bail!("--around {around}: a cylinder is expected") };
-            let clad = cladding::around(&base, cylinder, [arguments.from, arguments.to], thickness);
-            clad.map_err(|error| match error {
-                CladdingError::Gaps { .. } => anyhow::anyhow!("{error}, each with --from and --to."),
-                _ => error.into(),
-            })
-            .with_context(context)?
-        }
-        None => {
-            let plane: Chart = format!("plane:up={}", arguments.up).parse().context("--up")?;
-            let up = plane.sheet(0.0).at(DVec3::ZERO).normal;
-            let area = arguments.area.as_ref().map(|path| {
-                let outlines = outline::read(&file::read(path)?).with_context(|| path.display().to_string())?;
-                anyhow::Ok(outlines.region(1.0))
-            });
-            let area = area.transpose()?;
-            cladding::over(&base, up, arguments.step, area.as_ref(), thickness, &task).with_context(context)?
-        }
-    };
+    let mut cladding = made(arguments, &base, 0.0, &profile, &task)?;
+    // Both stand on the table: cladding that reaches below its base lifts it.
+    let lowest = cladding.mesh.bounds().0.z;
+    if lowest < 0.0 {
+        cladding = made(arguments, &base, -lowest, &profile, &task)?;
+    }
+    let lifted = (-lowest).max(0.0);
+    let drawn = arguments.model.drawn(&task)?;
+    let (unit, [from, to]) =
+        (base.size().max_element() / drawn.size().max_element(), [&base, &drawn].map(|m| m.bounds().0));
+    // Back to the units and coordinates of the file.
+    cladding.mesh.vertices.iter_mut().for_each(|p| *p = (*p - DVec3::Z * lifted - from) / unit + to);
     bar.finish_and_clear();
     write(arguments, &cladding)
 }
 
-fn write(arguments: &Arguments, Cladding { mesh, chart }: &Cladding) -> anyhow::Result<()> {
+/// Cladding of the base, lifted by some mm.
+fn made(arguments: &Arguments, base: &Mesh, lifted: f64, profile: &Profile, task: &Task) -> anyhow::Result<Cladding> {
+    let mut base = base.clone();
+    base.vertices.iter_mut().for_each(|p| p.z += lifted);
+    let thickness = f64::from(arguments.layers) * profile.layers.height;
+    let context = || arguments.model.model.display().to_string();
+    let Some(around) = &arguments.around else {
+        let plane: Chart = format!("plane:up={}", arguments.up).parse().context("--up")?;
+        let up = plane.sheet(0.0).at(DVec3::ZERO).normal;
+        let area = arguments.area.as_ref().map(|path| {
+            let outlines = outline::read(&file::read(path)?).with_context(|| path.display().to_string())?;
+            anyhow::Ok(outlines.region(1.0))
+        });
+        let area = area.transpose()?;
+        let clad = cladding::over(&base, up, arguments.step, area.as_ref(), thickness, task);
+        return clad.map_err(advised).with_context(context);
+    };
+    let chart: Chart = format!("cylinder:{around}").parse().context("--around")?;
+    let Chart::Cylinder(mut cylinder) = chart else { anyhow::bail!("--around {around}: a cylinder is expected") };
+    cylinder.through.z += lifted;
+    let clad = cladding::around(&base, cylinder, [arguments.from, arguments.to], thickness);
+    clad.map_err(advised).with_context(context)
+}
+
+/// An error with the flags that help.
+fn advised(error: CladdingError) -> anyhow::Error {
+    match error {
+        CladdingError::Gaps { .. } => anyhow::anyhow!("{error}, each with --from and --to."),
+        CladdingError::Warp(WarpError::Steep { .. }) => anyhow::anyhow!(
+            "{error} Faces at several heights are clad one after another, each with --area; a finer --step keeps to what is level."
+        ),
+        _ => error.into(),
+    }
+}
+
+fn write(arguments: &Arguments, Cladding { mesh, chart, bare }: &Cladding) -> anyhow::Result<()> {
     let (path, beside) = (&arguments.output, arguments.output.with_extension("bodies.toml"));
     let name = path.file_stem().map_or("cladding".into(), |stem| stem.to_string_lossy().into_owned());
     let corners = |corners: &[u32; 3]| corners.map(|corner| mesh.vertices[corner as usize]);
@@ -92,16 +121,31 @@ fn write(arguments: &Arguments, Cladding { mesh, chart }: &Cladding) -> anyhow::
     file::write(path, &stl::write(&name, mesh.triangles.iter().map(corners)))?;
     file::write(&beside, bodies.as_bytes())?;
     let mut out = say::done(false);
-    let layers = arguments.layers;
-    let helix = if chart.goes_around() { " --set 'fill.around=\"helix\"'" } else { "" };
-    writeln!(
-        out,
-        "{}: {:.1} cm³ for {layers} layer{}. Plan it with\n  beadwright plan {0} --onto {} --bodies {}{helix}",
-        path.display(),
-        mesh.volume() / 1000.0,
-        if layers == 1 { "" } else { "s" },
-        arguments.model.model.display(),
-        beside.display(),
-    )?;
+    let (layers, s) = (arguments.layers, if arguments.layers == 1 { "" } else { "s" });
+    if *bare > 0.0 {
+        let why = "too steep, hidden, or not there";
+        let place = if chart.goes_around() { "lies under it" } else { "is left out" };
+        writeln!(out, "warning: {:.1} cm² of the base {place} that is {why}.", bare / 100.0)?;
+    }
+    writeln!(out, "{}: {layers} layer{s} of cladding. Plan it with", path.display())?;
+    writeln!(out, "  {}", command(arguments, path, &beside, chart))?;
     Ok(())
+}
+
+/// The command that plans the cladding.
+fn command(arguments: &Arguments, path: &Path, beside: &Path, chart: &Chart) -> String {
+    let mut words = vec!["beadwright".to_owned(), "plan".to_owned(), path.display().to_string()];
+    let mut flag = |name: &str, value: String| words.extend([name.to_owned(), value]);
+    flag("--onto", arguments.model.model.display().to_string());
+    flag("--bodies", beside.display().to_string());
+    arguments.wanted.profile.iter().for_each(|profile| flag("--profile", profile.clone()));
+    arguments.wanted.set.iter().for_each(|set| flag("--set", set.clone()));
+    if chart.goes_around() {
+        flag("--set", "fill.around=\"helix\"".to_owned());
+    }
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
+    let quoted = |word: &String| {
+        if word.chars().all(plain) { word.clone() } else { format!("'{}'", word.replace('\'', "'\\''")) }
+    };
+    words.iter().map(quoted).collect::<Vec<_>>().join(" ")
 }

@@ -170,6 +170,13 @@ impl Model {
         file::stem(&self.model).unwrap_or_else(|| "part".to_owned())
     }
 
+    /// The solid in the coordinates and units of its file.
+    pub(crate) fn drawn(&self, task: &Task) -> anyhow::Result<Mesh> {
+        let import = if self.placing.accept_damaged { model::import_damaged } else { model::import };
+        let bytes = convert::solid(&self.model, file::model(&self.model)?)?;
+        Ok(import(&bytes, task).with_context(|| self.model.display().to_string())?.mesh)
+    }
+
     /// The model, scaled to mm, turned, and placed on z = 0.
     pub(crate) fn placed(&self, profile: &Profile, use_as: Use, task: &Task) -> anyhow::Result<Import> {
         let bead_width = profile.bead.width;

@@ -146,12 +146,15 @@ pub fn named_profile(text: &str) -> Option<&'static str> {
 const PLAN: &str = "plan";
 
 impl ReadBack {
-    /// The layers as the deposit model judges them: those of a plan as its chart shows them ([`plan::even`]).
+    /// The layers as the deposit model judges them: those of a plan as its chart shows them ([`plan::even`],
+    /// [`plan::unrolled_once`]).
     pub fn judged(&self, profile: &Profile) -> Cow<'_, [Layer]> {
-        if self.language != PLAN || !profile.layers.charts().any(Chart::has_wedges) {
+        let differ = |chart: &Chart| chart.has_wedges() || chart.goes_around();
+        if self.language != PLAN || !profile.layers.charts().any(differ) {
             return Cow::Borrowed(&self.layers);
         }
-        Cow::Owned(self.layers.iter().map(|layer| plan::even(layer, profile).into_owned()).collect())
+        let shown = |layer: &Layer| plan::unrolled_once(&plan::even(layer, profile), profile).into_owned();
+        Cow::Owned(self.layers.iter().map(shown).collect())
     }
 
     /// A plan, judged with the profile that it carries or the one that was asked for.

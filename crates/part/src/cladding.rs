@@ -6,8 +6,8 @@ use crate::model::Mesh;
 use crate::model::solid::Solid;
 use crate::task::Task;
 use glam::{DQuat, DVec2, DVec3};
-use planar::{FillRule, Region, Ring};
-use std::f64::consts::PI;
+use planar::{FillRule, Join, Region, Ring};
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Metal to be laid, and how its layers lie.
@@ -17,6 +17,8 @@ pub struct Cladding {
     pub mesh: Mesh,
     /// Layers over the surface of the base, or around its axis.
     pub chart: Chart,
+    /// What is left out because it is too steep, hidden, or not there, mm²: seen along the direction of the surface, or around the axis.
+    pub bare: f64,
 }
 
 /// Why nothing can be clad.
@@ -52,14 +54,22 @@ pub enum CladdingError {
     },
 }
 
-/// Faces steeper than this are not clad from above: the cosine of 17.7°, on which beads lie 5 % farther apart.
-const STEEPEST: f64 = 1.0 / 1.05;
-/// Faces belong to what is seen from above if they lie no deeper under the surface than this part of its grid.
+/// Where beads would lie farther apart than by this factor, nothing is clad: steeper than 17.7°.
+const STEEPEST: f64 = 1.05;
+/// Faces that look up: the cosine of their steepest slope, 45°. Scans are rougher than what was scanned.
+const FACING: f64 = 0.7;
+/// Faces are seen if they lie no deeper under the surface than this part of its grid.
 const SEEN: f64 = 1.0;
+/// Faces are looked at in pieces of this many steps of the grid.
+const PIECE: f64 = 2.0;
+/// Around an area heights are measured for this many steps of the grid.
+const BESIDE: f64 = 1.5;
 /// Chord tolerance of the mesh, mm.
 const TOLERANCE: f64 = 0.02;
 /// Faces lie on a cylinder if their corners are this near to it, in parts of its radius.
 const ROUND: f64 = 0.01;
+/// This part of a cylinder may be missing before it counts: chords are shorter than their arcs.
+const WHOLE: f64 = 0.01;
 /// Pieces of a circle.
 const SEGMENTS: u32 = 360;
 
@@ -76,14 +86,33 @@ pub fn over(
     thickness: f64,
     task: &Task,
 ) -> Result<Cladding, CladdingError> {
-    let surface = Arc::new(Surface::of_mesh(base, up, step)?.rounded());
+    // First as it is seen, then only what can be clad: what falls away beside it does not pull its edges down.
+    let near = area.map(|area| area.offset(BESIDE * step, Join::ROUND));
+    let kept = |p: DVec2| near.as_ref().is_none_or(|near| near.contains(p));
+    let facing = faces(base, |corners| normal(corners).dot(up) >= FACING);
+    let facing = warp::divided(&facing, PIECE * step, task)?;
+    let whole = Surface::of_faces(&facing, up, step, kept).map_err(|error| match error {
+        SurfaceError::Nothing => CladdingError::NoArea,
+        other => other.into(),
+    })?;
+    let chart = Chart::Surface(Arc::new(whole.clone()));
+    let level = faces(&facing, |corners| {
+        let middle = chart.coordinates(corners.iter().sum::<DVec3>() / 3.0);
+        let seen = middle.z >= -SEEN * step && kept(middle.truncate());
+        seen && (whole.stretch(middle.truncate()) <= STEEPEST || normal(corners).dot(up) >= 1.0 / STEEPEST)
+    });
+    if level.triangles.is_empty() {
+        return Err(CladdingError::NoArea);
+    }
+    task.check().map_err(WarpError::from)?;
+    let surface = Arc::new(Surface::of_faces(&level, up, step, kept)?.rounded());
     let chart = Chart::Surface(Arc::clone(&surface));
-    let seen = seen(base, up, step, &chart);
     let region = match area {
-        Some(area) => seen.intersection(area),
-        None => seen,
+        Some(area) => shadow(&level, &chart).intersection(area),
+        None => shadow(&level, &chart),
     };
-    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    warp::check_slope(&surface, &places(&region, step / 2.0))?;
+    let (mut vertices, mut triangles, mut covered) = (Vec::new(), Vec::new(), 0.0);
     for polygon in region.simplified(TOLERANCE).polygons().iter().filter(|polygon| polygon.area() > step * step) {
         let first = vertices.len() as u32;
         let flat = Solid::extrude(polygon, 0.0, thickness);
@@ -91,25 +120,44 @@ pub fn over(
         let bent = warp::bent(&surface, &flat, TOLERANCE, task)?;
         vertices.extend(bent.vertices);
         triangles.extend(bent.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+        covered += polygon.area();
     }
     if triangles.is_empty() {
         return Err(CladdingError::NoArea);
     }
-    Ok(Cladding { mesh: Mesh::from_triangles(vertices, triangles).0, chart })
+    let all = match area {
+        Some(area) => area.area(),
+        None => shadow(&facing, &chart).area(),
+    };
+    let bare = (all - covered).max(0.0);
+    Ok(Cladding { mesh: Mesh::from_triangles(vertices, triangles).0, chart, bare })
 }
 
-/// What is seen of a base over its surface and is not too steep, as (u, v) of the surface.
-fn seen(base: &Mesh, up: DVec3, step: f64, chart: &Chart) -> Region {
-    let is_seen = |corners: &[DVec3; 3]| {
-        let [a, b, c] = corners.map(|corner| chart.coordinates(corner));
-        let level = [a, b, c].iter().all(|p| p.z.abs() <= SEEN * step);
-        let [a, b, c] = *corners;
-        level && (b - a).cross(c - a).normalize_or_zero().dot(up) >= STEEPEST
-    };
-    let triangles = base.triangles.iter().map(|corners| corners.map(|corner| base.vertices[corner as usize]));
-    let flat = |corners: [DVec3; 3]| Ring::new(corners.map(|p| chart.coordinates(p).truncate()).to_vec());
-    let rings: Vec<Ring> = triangles.filter(is_seen).map(flat).collect();
-    Region::from_rings(&rings, FillRule::NonZero)
+/// Places of a region on a grid, mm.
+fn places(region: &Region, step: f64) -> Vec<DVec3> {
+    let Some(bounds) = region.bounds() else { return Vec::new() };
+    let counts = (bounds.size() / step).ceil();
+    let at = |i: usize, j: usize| bounds.min + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * step;
+    let rows = (0..counts.y as usize).flat_map(|j| (0..counts.x as usize).map(move |i| at(i, j)));
+    rows.filter(|p| region.contains(*p)).map(|p| p.extend(0.0)).collect()
+}
+
+fn normal([a, b, c]: &[DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
+/// A mesh with some of the faces.
+fn faces(mesh: &Mesh, kept: impl Fn(&[DVec3; 3]) -> bool) -> Mesh {
+    let corners = |triangle: &[u32; 3]| triangle.map(|corner| mesh.vertices[corner as usize]);
+    let triangles = mesh.triangles.iter().copied().filter(|triangle| kept(&corners(triangle))).collect();
+    Mesh { vertices: mesh.vertices.clone(), triangles, ..Mesh::default() }
+}
+
+/// What lies under or over faces that look up, as (u, v) of a surface.
+fn shadow(mesh: &Mesh, chart: &Chart) -> Region {
+    let flat: Vec<DVec2> = mesh.vertices.iter().map(|p| chart.coordinates(*p).truncate()).collect();
+    let ring = |triangle: &[u32; 3]| Ring::new(triangle.map(|corner| flat[corner as usize]).to_vec());
+    Region::from_rings(&mesh.triangles.iter().map(ring).collect::<Vec<_>>(), FillRule::NonZero)
 }
 
 /// Cladding around an axis, of the given thickness, mm, on the faces of a base that lie on the cylinder: as far along the axis as
@@ -143,7 +191,8 @@ pub fn around(
         faces && corners.iter().all(|p| (out(*p).length() - radius).abs() <= ROUND * radius)
     };
     let triangles = base.triangles.iter().map(|corners| corners.map(|corner| base.vertices[corner as usize]));
-    let along = triangles.filter(is_on_it).map(|corners| corners.map(|p| axis.dot(p - through)));
+    let round: Vec<[DVec3; 3]> = triangles.filter(is_on_it).collect();
+    let along = round.iter().map(|corners| corners.map(|p| axis.dot(p - through)));
     let spans = along.map(|at| [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])]);
     let [from, to] = [between[0].unwrap_or(f64::MIN), between[1].unwrap_or(f64::MAX)];
     let within = together(spans.collect()).into_iter().map(|[low, high]| [low.max(from), high.min(to)]);
@@ -162,5 +211,20 @@ pub fn around(
     let Solid { vertices, triangles } = Solid::revolve(&section, SEGMENTS);
     let turn = DQuat::from_rotation_arc(DVec3::Z, axis);
     let vertices = vertices.into_iter().map(|p| turn * p + through).collect();
-    Ok(Cladding { mesh: Mesh::from_triangles(vertices, triangles).0, chart: Chart::Cylinder(cylinder) })
+    let [all, there] = [TAU * radius * (high - low), round_area(&round, &cylinder, [low, high])];
+    let bare = if there < (1.0 - WHOLE) * all { all - there } else { 0.0 };
+    Ok(Cladding { mesh: Mesh::from_triangles(vertices, triangles).0, chart: Chart::Cylinder(cylinder), bare })
+}
+
+/// Area of faces on a cylinder between two places along its axis, mm²: all of those in between, and of others the part that their
+/// length has in common.
+fn round_area(faces: &[[DVec3; 3]], cylinder: &Cylinder, [low, high]: [f64; 2]) -> f64 {
+    let share = |corners: &[DVec3; 3]| {
+        let at = corners.map(|p| cylinder.axis.dot(p - cylinder.through));
+        let [from, to] = [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])];
+        let common = (to.min(high) - from.max(low)).max(0.0);
+        let [a, b, c] = *corners;
+        0.5 * (b - a).cross(c - a).length() * if to > from { common / (to - from) } else { 1.0 }
+    };
+    faces.iter().map(share).sum()
 }

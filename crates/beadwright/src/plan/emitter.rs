@@ -47,6 +47,8 @@ pub(super) struct Emitter<'a, S> {
     /// Top of the highest layer with beads, mm.
     pub(super) built: f64,
     pub(super) points: usize,
+    /// Number of layers with passes that go around an axis more than once.
+    pub(super) around: usize,
     pub(super) metrics: Metrics,
     pub(super) warnings: Warnings,
 }
@@ -108,8 +110,9 @@ impl<S: Sink> Emitter<'_, S> {
     }
 
     /// Shares out the metal of a level layer, and measures what it covers where `reaches` says what beads reach.
-    fn share(&self, layer: &mut Layer, reaches: &[Option<Reach>], wedge: Option<&Wedge<'_>>) {
+    fn share(&mut self, layer: &mut Layer, reaches: &[Option<Reach>], wedge: Option<&Wedge<'_>>) {
         let bands = Bands::of_layer(layer, self.profile);
+        self.around += usize::from(bands.is_some());
         let of = bands.as_ref().map(|bands| {
             let (pieces, of) = bands.cut(&layer.passes);
             layer.passes = pieces;

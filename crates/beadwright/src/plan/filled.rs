@@ -113,7 +113,7 @@ fn settings_of<'a>(layer: &'a Planned, profile: &'a Profile) -> FillSettings<'a>
     let mut settings = profile.fill_settings(layer.slice.index);
     settings.raster_angle = layer.raster_angle.unwrap_or(settings.raster_angle);
     settings.solid = layer.solid.as_ref();
-    settings.turn = turns::length_of_turn(&layer.slice, profile);
+    settings.turn = turns::turn_of(&layer.slice, profile);
     settings
 }
 

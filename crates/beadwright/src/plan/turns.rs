@@ -3,10 +3,12 @@
 
 use super::cover;
 use crate::chart::Chart;
-use crate::fill::{Fill, Path, around};
+use crate::fill::around::{self, Turn};
+use crate::fill::{Fill, Path, StrategyName};
 use crate::layer::Layer;
 use crate::pass::{Along, Pass, Segment};
 use crate::profile::Profile;
+use crate::program::Turning;
 use crate::slice::{Slice, middle};
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
@@ -15,10 +17,19 @@ use std::borrow::Cow;
 /// Pieces shorter than this are nothing, mm.
 const NOTHING: f64 = 1e-6;
 
-/// Length of a turn of a slice, mm, where islands that go all around are filled with a helix.
-pub(super) fn length_of_turn(slice: &Slice, profile: &Profile) -> Option<f64> {
+/// A turn of a slice, where islands that go all around are filled with a helix.
+pub(super) fn turn_of(slice: &Slice, profile: &Profile) -> Option<Turn> {
     profile.fill.around.filter(|around| *around == around::Around::Helix)?;
-    turn(&profile.layers.chart, middle(slice.z, slice.height, slice.half))
+    // Walls are welded along their middle.
+    if profile.fill.strategy == StrategyName::Wall {
+        return None;
+    }
+    let length = turn(&profile.layers.chart, middle(slice.z, slice.height, slice.half))?;
+    // A positioner that turns under the arc has an axis that does so.
+    let follows = profile.program.positioner.iter().filter(|positioner| positioner.turning == Turning::Follow);
+    let ranges = follows.flat_map(|positioner| &positioner.axes).map(|axis| axis.limits[1] - axis.limits[0]);
+    let most = ranges.reduce(f64::max).map_or(f64::INFINITY, |range| range / 360.0);
+    Some(Turn { length, most })
 }
 
 /// Length of a turn of the layer with this middle, mm; `None` where layers do not go on turn after turn.
@@ -68,10 +79,12 @@ pub fn is_jump(piece: &Segment) -> bool {
     piece.width <= HAIR
 }
 
-/// What fills an island, in the same way; `turn` in mm.
-pub(super) fn fill_once<'a>(fill: &'a Fill, island: &Polygon, turn: Option<f64>, profile: &Profile) -> Cow<'a, Fill> {
+/// What fills an island, in the same way.
+pub(super) fn fill_once<'a>(fill: &'a Fill, island: &Polygon, turn: Option<Turn>, profile: &Profile) -> Cow<'a, Fill> {
     let islands = std::slice::from_ref(island);
-    let Some(bands) = turn.and_then(|turn| Bands::of(islands, turn, profile)) else { return Cow::Borrowed(fill) };
+    let Some(bands) = turn.and_then(|turn| Bands::of(islands, turn.length, profile)) else {
+        return Cow::Borrowed(fill);
+    };
     let flat = |path: &Path| Pass {
         kind: path.kind,
         closed: path.closed,

@@ -156,3 +156,24 @@ fn the_chuck_turns_one_way_under_the_arc() {
         assert!(off < 0.01, "layer {}: {off} mm of {}", layer.index, TAU * radius);
     }
 }
+
+/// A table that cannot turn as often as there are rings gets the plan that it can follow.
+#[test]
+fn a_table_that_turns_little_gets_no_helix() {
+    let mut profile = around(DVec3::Z, 30.0, "outer");
+    let axis = |limit: f64| PositionerAxis {
+        direction: [0.0, 0.0, 1.0],
+        through: [0.0; 3],
+        limits: [-limit, limit],
+        speed: 90.0,
+    };
+    let mesh = pipe(DVec3::Z, [30.0, 34.0], 60.0);
+    let mut notes = |limit: f64| {
+        let axes = vec![axis(limit)];
+        profile.program.positioner = Some(Positioner { turning: Turning::Follow, axes, up: [1.0, 0.0, 0.0] });
+        let plan = planned(&mesh, &profile);
+        plan.summary.notes.iter().any(|note| note.contains("No layer is laid as a helix"))
+    };
+    // Eleven rings.
+    assert!(notes(190.0) && notes(1900.0) && !notes(2100.0));
+}

@@ -84,6 +84,19 @@ impl Surface {
     /// # Errors
     /// [`SurfaceError`].
     pub fn of_mesh(mesh: &Mesh, up: DVec3, step: f64) -> Result<Self, SurfaceError> {
+        Self::of_faces(mesh, up, step, |_| true)
+    }
+
+    /// The same of those places of the grid that are kept; beside them the surface goes on as beside the mesh.
+    ///
+    /// # Errors
+    /// [`SurfaceError`].
+    pub(crate) fn of_faces(
+        mesh: &Mesh,
+        up: DVec3,
+        step: f64,
+        kept: impl Fn(DVec2) -> bool,
+    ) -> Result<Self, SurfaceError> {
         let turn = turn(up).conjugate();
         let seen: Vec<DVec3> = mesh.vertices.iter().map(|p| turn * *p).collect();
         let corner = |least: DVec2, p: &DVec3| least.min(p.truncate());
@@ -103,6 +116,8 @@ impl Surface {
         for corners in &mesh.triangles {
             raise(&mut tops, columns, from, step, corners.map(|corner| seen[corner as usize]));
         }
+        let place = |k: usize| from + DVec2::new((k % columns) as f64, (k / columns) as f64) * step;
+        let tops = tops.into_iter().enumerate().map(|(k, top)| top.filter(|_| kept(place(k)))).collect();
         let heights = spread(tops, columns).ok_or(SurfaceError::Nothing)?;
         Self::new(up, from, step, columns, heights)
     }

@@ -42,24 +42,36 @@ pub fn warped(chart: &Chart, mesh: &Mesh, tolerance: f64, task: &Task) -> Result
 /// (mm) of the true ones.
 ///
 /// # Errors
-/// [`WarpError::Cancelled`], and [`WarpError::Steep`] where layers cannot follow the surface.
+/// [`WarpError::Cancelled`].
 pub fn bent(surface: &Surface, flat: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
     let place = |p: DVec3| surface.at(p).place;
     let cut = |a: DVec3, b: DVec3| {
         let off = |part: f64| place(a.lerp(b, part)).distance(place(a).lerp(place(b), part));
-        let is_short = a.distance(b) < SHORT_OVER * surface.step();
+        let is_short = a.distance(b) < SHORT_BENT * surface.step();
         let long = a.distance(b) > surface.step();
         let bent = !is_short && (long || [0.25, 0.5, 0.75].into_iter().any(|part| off(part) > tolerance));
         Ok(bent.then(|| a.midpoint(b)))
     };
     let Divided { vertices, triangles } = Divided::of(flat, cut, task)?;
-    check_slope(surface, &vertices)?;
     Ok(Mesh::from_triangles(vertices.into_iter().map(place).collect(), triangles).0)
 }
 
+/// The same mesh with edges no longer than this, mm.
+///
+/// # Errors
+/// [`WarpError::Cancelled`].
+pub(crate) fn divided(mesh: &Mesh, longest: f64, task: &Task) -> Result<Mesh, WarpError> {
+    let cut = |a: DVec3, b: DVec3| Ok((a.distance(b) > longest).then(|| a.midpoint(b)));
+    let Divided { vertices, triangles } = Divided::of(mesh, cut, task)?;
+    Ok(Mesh { vertices, triangles, ..Mesh::default() })
+}
+
+/// Edges shorter than this part of the grid are not divided further: at a kink they never become straight.
+const SHORT_BENT: f64 = 0.1;
+
 /// # Errors
 /// [`WarpError::Steep`] where layers at these coordinates cannot follow a surface.
-fn check_slope(surface: &Surface, coordinates: &[DVec3]) -> Result<(), WarpError> {
+pub(crate) fn check_slope(surface: &Surface, coordinates: &[DVec3]) -> Result<(), WarpError> {
     match coordinates.iter().find(|p| surface.stretch(p.truncate()) > STEEPEST) {
         Some(p) => Err(WarpError::Steep { place: surface.at(*p).place, stretch: surface.stretch(p.truncate()) }),
         None => Ok(()),

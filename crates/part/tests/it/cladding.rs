@@ -89,3 +89,28 @@ fn a_shaft_with_flanges_is_clad_between_them() {
     let between = around(&shaft, bar, [Some(40.0), Some(110.0)], 2.0).unwrap().mesh.bounds();
     assert!((between.0.z - 60.0).abs() < 1e-9 && (between.1.z - 105.0).abs() < 1e-9, "{between:?}");
 }
+
+/// A step beside what is clad does not pull its edge down, and roughness of a scan is no slope.
+#[test]
+fn steps_are_left_out_and_rough_surfaces_are_not() {
+    let block = |low: [f64; 3], high: [f64; 3]| {
+        let corners = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])].map(DVec2::from);
+        Solid::extrude(&Polygon::simple(Ring::new(corners.to_vec())), low[2], high[2])
+    };
+    let mut base = block([0.0, 0.0, 0.0], [150.0, 90.0, 10.0]);
+    let tower = block([100.0, 0.0, 10.0], [150.0, 90.0, 40.0]);
+    let first = base.vertices.len() as u32;
+    base.vertices.extend(tower.vertices);
+    base.triangles.extend(tower.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+    let base = Mesh::from_triangles(base.vertices, base.triangles).0;
+    let corners = [(5.0, 5.0), (90.0, 5.0), (90.0, 85.0), (5.0, 85.0)].map(DVec2::from);
+    let area = Region::from(Polygon::simple(Ring::new(corners.to_vec())));
+    let below = over(&base, DVec3::Z, 5.0, Some(&area), 2.0, &Task::new()).unwrap();
+    assert!((below.mesh.volume() / (85.0 * 80.0 * 2.0) - 1.0).abs() < 0.005, "{}", below.mesh.volume());
+    assert!(below.bare < 1.0, "{}", below.bare);
+    let rough = |k: usize| 0.2 * ((k as f64 * 12.9898).sin() * 43758.5453).fract();
+    let mut scan = saddle(DVec3::Z);
+    scan.vertices.iter_mut().enumerate().filter(|(_, p)| p.z > 1.0).for_each(|(k, p)| p.z += rough(k));
+    let rough = over(&scan, DVec3::Z, 5.0, None, 2.0, &Task::new()).unwrap();
+    assert!((rough.mesh.volume() / (160.0 * 100.0 * 2.0) - 1.0).abs() < 0.02, "{}", rough.mesh.volume());
+}

@@ -18,6 +18,15 @@ pub enum Around {
     Helix,
 }
 
+/// A layer that goes on turn after turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn {
+    /// Length of a turn, mm.
+    pub length: f64,
+    /// So often the part can turn while the arc burns.
+    pub most: f64,
+}
+
 /// An edge is a ring if it deviates from one by no more than this, in bead widths.
 const EVEN: f64 = 0.05;
 /// Two ends of an island lie a turn apart if that is true to this, mm: they overlap by a hair.
@@ -40,11 +49,11 @@ pub fn band(island: &Polygon, turn: f64, width: f64) -> Option<Bounds> {
 }
 
 /// One path that goes around as often as there are rings, unrolled turn after turn along x; `None` where the island does not
-/// go all around between two rings, or beads would be narrower or wider than they may be.
+/// go all around between two rings, beads would be narrower or wider than they may be, or the part cannot turn that often.
 ///
 /// The first ring and the last one are whole, so the first step begins on metal and the last ring ends on it.
 pub fn helix(island: &Polygon, settings: &FillSettings<'_>) -> Option<Path> {
-    let turn = settings.turn?;
+    let Turn { length: turn, most } = settings.turn?;
     let bounds = band(island, turn, settings.bead.width)?;
     let high = bounds.size().y + 2.0 * settings.machining_allowance;
     let part = settings.stepover / settings.bead.width;
@@ -52,7 +61,8 @@ pub fn helix(island: &Polygon, settings: &FillSettings<'_>) -> Option<Path> {
     let rings = ((high / settings.bead.width - 1.0) / part).round().max(0.0);
     let width = high / (1.0 + rings * part);
     let (narrowest, widest) = settings.one_loop.width_limits;
-    if !(narrowest..=widest).contains(&width) {
+    let turns = rings + 1.0 + STEP * width / turn;
+    if !(narrowest..=widest).contains(&width) || turns > most {
         return None;
     }
     let (first, apart, step) = (bounds.min.y - settings.machining_allowance + width / 2.0, part * width, STEP * width);

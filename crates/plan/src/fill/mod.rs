@@ -228,8 +228,8 @@ pub struct FillSettings<'a> {
     pub wall: wall::WallSettings,
     /// How loops are laid.
     pub one_loop: one_loop::LoopOptions,
-    /// Length of a turn of the layer around an axis, mm, where islands that go all around are filled with a helix.
-    pub turn: Option<f64>,
+    /// How far a helix goes on around an axis, where islands that go all around are filled with one.
+    pub turn: Option<around::Turn>,
     /// A reference point, the same on all layers of a part; patterns that repeat over the layers are measured from it.
     pub datum: DVec2,
 }

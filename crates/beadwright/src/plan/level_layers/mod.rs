@@ -77,7 +77,7 @@ fn are_alike(a: &Slice, b: &Slice) -> bool {
 
 /// A slice with its passes. Which way scan lines run hardly matters for the metal.
 fn filled(slice: Slice, strategy: &dyn Strategy, profile: &Profile, middle: DVec2) -> Layer {
-    let turn = turns::length_of_turn(&slice, profile);
+    let turn = turns::turn_of(&slice, profile);
     let planned = Planned { slice, raster_angle: None, solid: None };
     let Filled { slice, fills, .. } = fill_planned(&planned, strategy, profile, middle);
     let laid = slice.islands.into_iter().zip(&fills).filter(|(_, fill)| !fill.is_empty());
