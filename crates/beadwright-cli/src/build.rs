@@ -3,6 +3,7 @@
 use crate::{adapt, model, profile, program, progress};
 use beadwright::adapt::Feedback;
 use beadwright::build::{self, Built, Errors, Heat, Settings, page};
+use beadwright::chart::Chart;
 use beadwright::files::write_file;
 use beadwright::heat::plate;
 use beadwright::layer::Layer;
@@ -178,6 +179,10 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
 
 /// Layers as their chart shows them.
 fn even(layers: &[Layer], profile: &Profile) -> anyhow::Result<Vec<Layer>> {
+    anyhow::ensure!(
+        !profile.layers.charts().any(Chart::goes_around),
+        "layers around an axis do not lie over one another as they are unrolled, so this command cannot build them (layers.chart)"
+    );
     if let Some(layer) = layers.iter().find(|layer| layer.half.is_some()) {
         anyhow::bail!(
             "layer {}: the outer side of a bend takes two layers where the inner side takes one, which this command cannot \

@@ -123,9 +123,12 @@ fn write(arguments: &Arguments, Cladding { mesh, chart, bare }: &Cladding) -> an
     let mut out = say::done(false);
     let (layers, s) = (arguments.layers, if arguments.layers == 1 { "" } else { "s" });
     if *bare > 0.0 {
-        let why = "too steep, hidden, or not there";
-        let place = if chart.goes_around() { "lies under it" } else { "is left out" };
-        writeln!(out, "warning: {:.1} cm² of the base {place} that is {why}.", bare / 100.0)?;
+        let what = if chart.goes_around() {
+            "of the base under it is missing"
+        } else {
+            "is left out: too steep, hidden, or not there"
+        };
+        writeln!(out, "warning: {:.1} cm² {what}.", bare / 100.0)?;
     }
     writeln!(out, "{}: {layers} layer{s} of cladding. Plan it with", path.display())?;
     writeln!(out, "  {}", command(arguments, path, &beside, chart))?;
@@ -138,6 +141,10 @@ fn command(arguments: &Arguments, path: &Path, beside: &Path, chart: &Chart) -> 
     let mut flag = |name: &str, value: String| words.extend([name.to_owned(), value]);
     flag("--onto", arguments.model.model.display().to_string());
     flag("--bodies", beside.display().to_string());
+    if arguments.model.placing.accept_damaged {
+        words.push("--accept-damaged".to_owned());
+    }
+    let mut flag = |name: &str, value: String| words.extend([name.to_owned(), value]);
     arguments.wanted.profile.iter().for_each(|profile| flag("--profile", profile.clone()));
     arguments.wanted.set.iter().for_each(|set| flag("--set", set.clone()));
     if chart.goes_around() {

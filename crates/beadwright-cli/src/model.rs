@@ -48,7 +48,7 @@ pub(crate) struct Placing {
     shift: DVec2,
     /// Accept an STL file that ends too early or holds more than it says, and use the triangles that it does have.
     #[arg(long)]
-    accept_damaged: bool,
+    pub(crate) accept_damaged: bool,
 }
 
 impl Placing {

@@ -166,9 +166,9 @@ pub(crate) fn height_field(
             None,
         ));
     };
-    let bounds = extent(std::slice::from_ref(layer));
-    let settings = fitted(grid, plan::deposit_settings(&planned.profile), &bounds, 1)?;
     let welded = plan::welded_alone(layer, &planned.profile);
+    let bounds = extent(std::slice::from_ref(&*welded));
+    let settings = fitted(grid, plan::deposit_settings(&planned.profile), &bounds, 1)?;
     let strokes: Vec<_> = welded.passes.iter().flat_map(|pass| strokes(pass, &settings.nominal)).collect();
     let grid = Grid::covering(&bounds, settings.nominal.bead.width, settings.step);
     let heights = Running::new(None, None)

@@ -27,7 +27,7 @@ pub enum CladdingError {
     /// The heights of the base.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
-    /// Stopped by the caller, or too steep.
+    /// The caller stopped it, or the surface is too steep.
     #[error(transparent)]
     Warp(#[from] WarpError),
     /// The area and what is seen of the base lie apart.
@@ -43,15 +43,30 @@ pub enum CladdingError {
         /// Where its faces would point.
         facing: &'static str,
     },
+    /// Nothing of the cylinder lies where it is to be clad.
+    #[error("the face reaches {}, and nothing of it lies between the two places asked for", words(.stretches))]
+    Beside {
+        /// Where it begins and ends along the axis, mm.
+        stretches: Vec<[f64; 2]>,
+    },
+    /// A bore narrower than its cladding.
+    #[error("a bore of {radius} mm radius has no room for {thickness} mm of cladding")]
+    Narrow {
+        /// mm
+        radius: f64,
+        /// mm
+        thickness: f64,
+    },
     /// The cylinder is interrupted, by flanges for example.
-    #[error(
-        "the face has gaps along the axis: it reaches {}. Clad one of these after another",
-        .stretches.iter().map(|[from, to]| format!("from {from:.1} to {to:.1} mm")).collect::<Vec<_>>().join(", ")
-    )]
+    #[error("the face has gaps along the axis: it reaches {}. Clad them one at a time", words(.stretches))]
     Gaps {
         /// Where it begins and ends along the axis, mm.
         stretches: Vec<[f64; 2]>,
     },
+}
+
+fn words(stretches: &[[f64; 2]]) -> String {
+    stretches.iter().map(|[from, to]| format!("from {from:.1} to {to:.1} mm")).collect::<Vec<_>>().join(", ")
 }
 
 /// Where beads would lie farther apart than by this factor, nothing is clad: steeper than 17.7°.
@@ -66,8 +81,9 @@ const PIECE: f64 = 2.0;
 const BESIDE: f64 = 1.5;
 /// Chord tolerance of the mesh, mm.
 const TOLERANCE: f64 = 0.02;
-/// Faces lie on a cylinder if their corners are this near to it, in parts of its radius.
+/// Faces lie on a cylinder if their corners are this near to it, in parts of its radius and mm.
 const ROUND: f64 = 0.01;
+const AWAY: f64 = 0.5;
 /// This part of a cylinder may be missing before it counts: chords are shorter than their arcs.
 const WHOLE: f64 = 0.01;
 /// Pieces of a circle.
@@ -164,7 +180,7 @@ fn shadow(mesh: &Mesh, chart: &Chart) -> Region {
 /// they reach, or only between two places along it, mm from the point `through`.
 ///
 /// # Errors
-/// [`CladdingError::NotRound`], [`CladdingError::Gaps`].
+/// [`CladdingError`], of a cylinder.
 pub fn around(
     base: &Mesh,
     cylinder: Cylinder,
@@ -172,6 +188,9 @@ pub fn around(
     thickness: f64,
 ) -> Result<Cladding, CladdingError> {
     let Cylinder { axis, through, radius, side, .. } = cylinder;
+    if side == Side::Inner && thickness >= radius {
+        return Err(CladdingError::Narrow { radius, thickness });
+    }
     let out = |p: DVec3| (p - through).reject_from_normalized(axis);
     let sign = if side == Side::Outer { 1.0 } else { -1.0 };
     // A face closes the gap to one that begins no farther than this behind it.
@@ -188,21 +207,21 @@ pub fn around(
     let is_on_it = |corners: &[DVec3; 3]| {
         let [a, b, c] = *corners;
         let faces = (b - a).cross(c - a).dot(out((a + b + c) / 3.0)) * sign > 0.0;
-        faces && corners.iter().all(|p| (out(*p).length() - radius).abs() <= ROUND * radius)
+        faces && corners.iter().all(|p| (out(*p).length() - radius).abs() <= (ROUND * radius).min(AWAY))
     };
     let triangles = base.triangles.iter().map(|corners| corners.map(|corner| base.vertices[corner as usize]));
     let round: Vec<[DVec3; 3]> = triangles.filter(is_on_it).collect();
     let along = round.iter().map(|corners| corners.map(|p| axis.dot(p - through)));
     let spans = along.map(|at| [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])]);
     let [from, to] = [between[0].unwrap_or(f64::MIN), between[1].unwrap_or(f64::MAX)];
-    let within = together(spans.collect()).into_iter().map(|[low, high]| [low.max(from), high.min(to)]);
+    let whole = together(spans.collect());
+    let within = whole.iter().map(|[low, high]| [low.max(from), high.min(to)]);
     let stretches: Vec<[f64; 2]> = within.filter(|[low, high]| high - low > TOLERANCE).collect();
+    let facing = if side == Side::Outer { "outwards" } else { "inwards" };
     let [low, high] = match stretches[..] {
         [one] => one,
-        [] => {
-            let facing = if side == Side::Outer { "outwards" } else { "inwards" };
-            return Err(CladdingError::NotRound { radius, facing });
-        }
+        [] if whole.is_empty() => return Err(CladdingError::NotRound { radius, facing }),
+        [] => return Err(CladdingError::Beside { stretches: whole }),
         _ => return Err(CladdingError::Gaps { stretches }),
     };
     // Circles of chords lie inside: these are as far out at the middle of each chord.

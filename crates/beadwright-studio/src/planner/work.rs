@@ -12,9 +12,10 @@ use beadwright::deposit::{Judge, Judgement};
 use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::model::{ImportError, Mesh, Model, Part, PartError, Placement};
+use beadwright::pass::Segment;
 use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::stock::Stocked;
-use beadwright::plan::{self, Header, PlanError, Sink};
+use beadwright::plan::{self, Bands, Header, PlanError, Sink};
 use beadwright::preform::PreformSettings;
 use beadwright::profile::Profile;
 use beadwright::task::{Cancelled, Task};
@@ -94,7 +95,7 @@ fn work(order: &Order, task: &Task, kept: &mut Cache, send: &(dyn Fn(Event) + Sy
     let settings = plan::deposit_settings_over(&profile, part.bounds());
     let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
     let each = |index: usize, judgement: Judgement| {
-        let errors = errors(&layers[index], &judgement);
+        let errors = errors(&layers[index], &judgement, &profile);
         send(Event::Judged(index, Arc::new(judgement), errors));
     };
     let judged = check::judge_layers(&layers, &profile, judge, task, each)?;
@@ -104,7 +105,7 @@ fn work(order: &Order, task: &Task, kept: &mut Cache, send: &(dyn Fn(Event) + Sy
 }
 
 /// The height error in the middle of every piece, in nominal bead heights.
-fn errors(layer: &Layer, judgement: &Judgement) -> Arc<[f32]> {
+fn errors(layer: &Layer, judgement: &Judgement, profile: &Profile) -> Arc<[f32]> {
     let Some(map) = &judgement.picture else { return Arc::default() };
     let at = |p: glam::DVec3| {
         let pixel = ((p.truncate() - map.low) / map.pixel).floor();
@@ -113,7 +114,9 @@ fn errors(layer: &Layer, judgement: &Judgement) -> Arc<[f32]> {
         // A void has no height in the picture.
         Some(height(*value).unwrap_or_default() - 1.0)
     };
-    let pieces = layer.passes.iter().flat_map(|pass| pass.segments());
+    let bands = Bands::of_layer(layer, profile);
+    let once = |piece: Segment| bands.as_ref().map_or(piece, |bands| bands.piece(piece));
+    let pieces = layer.passes.iter().flat_map(|pass| pass.segments()).map(once);
     pieces.map(|s| at((s.from + s.to) / 2.0).unwrap_or_default() as f32).collect()
 }
 

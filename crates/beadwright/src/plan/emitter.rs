@@ -47,8 +47,8 @@ pub(super) struct Emitter<'a, S> {
     /// Top of the highest layer with beads, mm.
     pub(super) built: f64,
     pub(super) points: usize,
-    /// Number of layers with passes that go around an axis more than once.
-    pub(super) around: usize,
+    /// Whether a layer is filled with a helix around an axis.
+    pub(super) has_helix: bool,
     pub(super) metrics: Metrics,
     pub(super) warnings: Warnings,
 }
@@ -59,7 +59,8 @@ impl<S: Sink> Emitter<'_, S> {
     /// # Errors
     /// Whatever the sink fails with.
     pub(super) fn emit(&mut self, filled: Filled) -> Result<(), S::Error> {
-        let Filled { slice, fills, planned_area, reaches, milled, shared, .. } = filled;
+        let Filled { slice, fills, planned_area, reaches, has_helix, milled, shared, .. } = filled;
+        self.has_helix |= has_helix;
         let Slice { index, z, height, half, islands, mut warnings } = slice;
         let slice_area = islands.iter().map(Polygon::area).sum();
         let laid = |&(island, _): &(usize, &Polygon)| fills.get(island).is_none_or(|fill| !fill.is_empty());
@@ -110,9 +111,8 @@ impl<S: Sink> Emitter<'_, S> {
     }
 
     /// Shares out the metal of a level layer, and measures what it covers where `reaches` says what beads reach.
-    fn share(&mut self, layer: &mut Layer, reaches: &[Option<Reach>], wedge: Option<&Wedge<'_>>) {
+    fn share(&self, layer: &mut Layer, reaches: &[Option<Reach>], wedge: Option<&Wedge<'_>>) {
         let bands = Bands::of_layer(layer, self.profile);
-        self.around += usize::from(bands.is_some());
         let of = bands.as_ref().map(|bands| {
             let (pieces, of) = bands.cut(&layer.passes);
             layer.passes = pieces;

@@ -28,6 +28,8 @@ pub(super) struct Filled {
     pub(super) reaches: Vec<Option<Reach>>,
     /// Number of warnings that the slice came with.
     pub(super) known: usize,
+    /// Whether an island is filled with a helix.
+    pub(super) has_helix: bool,
     /// What lies in this layer of the part that is milled from it.
     pub(super) milled: Option<Region>,
     /// Whether other layers have the same passes.
@@ -133,11 +135,12 @@ fn fill_layer(
     settings: &FillSettings,
 ) -> Filled {
     let (mut fills, mut planned_area, came_with) = (Vec::with_capacity(slice.islands.len()), 0.0, slice.warnings.len());
-    let mut reaches = Vec::new();
+    let (mut reaches, mut has_helix) = (Vec::new(), false);
     for (i, island) in slice.islands.iter().enumerate() {
         let reach = Reach::of(island, strategy.narrowest(settings));
         let roomy = reach.area > 0.0 || strategy.welds_thin_walls() || island.holds_disc(settings.wall.thinnest / 2.0);
         let helix = around::helix(island, settings).map(|helix| Fill { stages: vec![vec![helix]], fixed_order: true });
+        has_helix |= helix.is_some();
         let mut own = if let Some(helix) = helix {
             helix
         } else if roomy {
@@ -173,7 +176,7 @@ fn fill_layer(
         }
         fills.push(own);
     }
-    Filled { slice, fills, planned_area, reaches, known: came_with, milled: None, shared: false }
+    Filled { slice, fills, planned_area, reaches, known: came_with, has_helix, milled: None, shared: false }
 }
 
 /// The fill of an island by its strategy, or, where that cannot be welded, a simpler one of its own, or, with a warning, the

@@ -397,7 +397,7 @@ fn run<S: Sink + Send>(
         below_middle: 0.0,
         built: 0.0,
         points: 0,
-        around: 0,
+        has_helix: false,
         metrics: Metrics::new(profile),
         warnings: Warnings::default(),
     };
@@ -416,20 +416,21 @@ fn run<S: Sink + Send>(
         }
         ready = filled?;
     }
-    let Emitter { metrics, warnings, points, around, .. } = emitter;
+    let Emitter { metrics, warnings, points, has_helix, .. } = emitter;
     let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
     let forbidden = profile.forbidden().into_iter().chain(forbids).collect();
     let large = profile.check.max_plan_points.filter(|most| points > *most as usize);
     let large = large.map(|most| format!("The plan has {points} points; the limit is {most} (check.max_plan_points)."));
-    let straight = (around == 0 && profile.fill.around == Some(Around::Helix)).then(|| NO_HELIX.to_owned());
-    let notes = large.into_iter().chain(straight).chain(profile.notes()).collect();
+    let asked = profile.fill.around == Some(Around::Helix) && profile.layers.chart.goes_around();
+    let open = (asked && !has_helix).then(|| NO_HELIX.to_owned());
+    let notes = large.into_iter().chain(open).chain(profile.notes()).collect();
     Ok(Summary { metrics, warnings, notes, forbidden })
 }
 
 /// Why a helix that was asked for is not there.
-const NO_HELIX: &str = "No layer is laid as a helix (fill.around): its islands must go all around an axis (layers.chart = \
-                        \"cylinder:…\") between two edges that are rings, with room for a bead and without holes, and the positioner \
-                        must be able to turn as often as there are rings.";
+const NO_HELIX: &str = "No layer is laid as a helix (fill.around): its islands must go all around the axis of a cylinder, between two \
+                        edges that are rings, with room for whole beads and without holes, the strategy must not be wall, and the \
+                        positioner must be able to turn as often as there are rings.";
 
 fn check_layer_count<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<E>> {
     let (height, layer_height) = (mesh.size().z, profile.layers.height);

@@ -57,7 +57,7 @@ pub fn preview(
         below_middle: 0.0,
         built,
         points: 0,
-        around: 0,
+        has_helix: false,
         metrics,
         warnings,
     };

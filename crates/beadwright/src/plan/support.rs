@@ -131,7 +131,7 @@ impl Support {
             let bridge = if profile.prints() { f64::INFINITY } else { BRIDGE * width };
             let hanging: Vec<Option<Hanging>> =
                 layer.passes.iter().map(|pass| hanging(pass, width / SAMPLES, bridge, |p| below(once(p)))).collect();
-            self.left_out = self.take_out(layer, &hanging, width);
+            self.left_out = self.take_out(layer, &hanging, width, once);
         } else if !alike {
             self.left_out.clear();
         }
@@ -152,13 +152,19 @@ impl Support {
         within(&self.islands) && !within(&self.left_out)
     }
 
-    /// Takes out stubs that hang and small new islands whose passes all do, and warns of other passes that hang. Returns the
-    /// islands taken out.
-    fn take_out(&self, layer: &mut Layer, hanging: &[Option<Hanging>], width: f64) -> Vec<Polygon> {
+    /// Takes out stubs that hang and small new islands whose passes all do, and warns of other passes that hang. `once` gives the
+    /// place of a pass on the layer as it is unrolled once. Returns the islands taken out.
+    fn take_out(
+        &self,
+        layer: &mut Layer,
+        hanging: &[Option<Hanging>],
+        width: f64,
+        once: impl Fn(DVec2) -> DVec2,
+    ) -> Vec<Polygon> {
         if hanging.iter().all(Option::is_none) {
             return Vec::new();
         }
-        let start = |pass: &Pass| pass.start().unwrap_or_default().truncate();
+        let start = |pass: &Pass| once(pass.start().unwrap_or_default().truncate());
         let island_of = |pass: &Pass| layer.islands.iter().position(|island| island.contains(start(pass)));
         let of: Vec<Option<usize>> = layer.passes.iter().map(island_of).collect();
         let area = layer.islands.iter().map(Polygon::area).sum::<f64>();
@@ -181,8 +187,11 @@ impl Support {
                 }
                 None => {
                     if let Some(Hanging { length: size, place }) = *hanging {
-                        let kind =
-                            if self.is_unwelded(place) { WarningKind::OverUnwelded } else { WarningKind::InTheAir };
+                        let kind = if self.is_unwelded(once(place)) {
+                            WarningKind::OverUnwelded
+                        } else {
+                            WarningKind::InTheAir
+                        };
                         layer.warnings.push(Warning { kind, layer: layer.index, place, size });
                     }
                     kept.push(pass);

@@ -10,6 +10,7 @@ use crate::pass::{Along, Pass, Segment};
 use crate::profile::Profile;
 use crate::program::Turning;
 use crate::slice::{Slice, middle};
+use crate::warning::Warning;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
 use std::borrow::Cow;
@@ -25,10 +26,10 @@ pub(super) fn turn_of(slice: &Slice, profile: &Profile) -> Option<Turn> {
         return None;
     }
     let length = turn(&profile.layers.chart, middle(slice.z, slice.height, slice.half))?;
-    // A positioner that turns under the arc has an axis that does so.
-    let follows = profile.program.positioner.iter().filter(|positioner| positioner.turning == Turning::Follow);
-    let ranges = follows.flat_map(|positioner| &positioner.axes).map(|axis| axis.limits[1] - axis.limits[0]);
-    let most = ranges.reduce(f64::max).map_or(f64::INFINITY, |range| range / 360.0);
+    // The axis that carries the part turns it under the arc.
+    let follows = profile.program.positioner.as_ref().filter(|positioner| positioner.turning == Turning::Follow);
+    let axis = follows.and_then(|positioner| positioner.axes.last());
+    let most = axis.map_or(f64::INFINITY, |axis| (axis.limits[1] - axis.limits[0]) / 360.0);
     Some(Turn { length, most })
 }
 
@@ -67,7 +68,9 @@ pub fn drawn<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
             None => passes.push(piece),
         }
     }
-    Cow::Owned(Layer { passes, ..layer.clone() })
+    let place = |warning: &Warning| Warning { place: bands.place(warning.place), ..*warning };
+    let warnings = layer.warnings.iter().map(place).collect();
+    Cow::Owned(Layer { passes, warnings, ..layer.clone() })
 }
 
 /// Width (mm) and pace (mm/s) of a jump in a picture.
@@ -105,6 +108,8 @@ pub struct Bands {
     bands: Vec<Bounds>,
     /// Length of a turn, mm.
     turn: f64,
+    /// A pass that goes on reaches farther beyond its island than this, mm: beads may lie on an allowance.
+    beyond: f64,
 }
 
 impl Bands {
@@ -122,12 +127,15 @@ impl Bands {
         let band = |island| around::band(island, turn, width);
         let wider = |band: Bounds| Bounds { min: band.min - beyond, max: band.max + beyond };
         let bands: Vec<Bounds> = islands.iter().filter_map(band).map(wider).collect();
-        (!bands.is_empty()).then_some(Self { bands, turn })
+        let own = Self { bands, turn, beyond: profile.fill.machining_allowance + width };
+        (turn > width && !own.bands.is_empty()).then_some(own)
     }
 
     fn goes_on(&self, pass: &Pass) -> bool {
-        self.around(pass).is_some_and(|band| {
-            pass.points.iter().any(|p| p.x < band.min.x - 2.0 * OVERLAP || p.x > band.max.x + 2.0 * OVERLAP)
+        let is_finite = pass.points.iter().all(|p| p.is_finite());
+        self.around(pass).filter(|_| is_finite && !pass.closed).is_some_and(|band| {
+            let outside = |p: &DVec3| p.x < band.min.x - self.beyond || p.x > band.max.x + self.beyond;
+            pass.points.iter().any(outside)
         })
     }
 
@@ -235,9 +243,6 @@ impl Bands {
         *pass = Pass { wait: pass.wait, ..of_segments(pass, &segments) };
     }
 }
-
-/// Islands cut open overlap themselves by about this, mm.
-const OVERLAP: f64 = 0.01;
 
 /// An open pass along pieces that follow one another.
 fn of_segments(pass: &Pass, pieces: &[Segment]) -> Pass {

@@ -56,7 +56,7 @@ pub struct FillSection {
     /// a boundary that they meet at a slant (`hooked`), which leaves fewer voids there.
     #[serde(default)]
     pub line_ends: LineEnds,
-    /// How islands are filled that go all around an axis (`layers.chart = "cylinder:…"`): cut open and filled by the strategy
+    /// How islands that go all around an axis (`layers.chart = "cylinder:…"`) are filled: cut open and filled by the strategy
     /// (`open`, the default), or with one helix where both edges are rings (`helix`).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub around: Option<Around>,

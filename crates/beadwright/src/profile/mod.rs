@@ -35,9 +35,11 @@ pub use wall::WallSection;
 use crate::bead::pace::PaceSettings;
 use crate::bead::wall::{WallBead, WallError};
 use crate::bead::{Bead, MassBalance};
+use crate::chart::Chart;
 use crate::dialect::inform::InformSpeed;
 use crate::dialect::reading::Options;
 use crate::dialect::{Job, Sections};
+use crate::fill::around::Around;
 use crate::fill::{FillSettings, StrategyName};
 use crate::heat::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
 use crate::layer::Layer;
@@ -549,7 +551,10 @@ impl Profile {
                 fitting.height,
             )
         });
+        let nothing_around = self.fill.around == Some(Around::Helix) && !self.layers.charts().any(Chart::goes_around);
+        let helix =
+            nothing_around.then(|| "No layer goes around an axis, so none is a helix (fill.around).".to_owned());
         let ends = self.start_stop.notes(self.fill.min_pass_length);
-        self.mass_balance().warning().into_iter().chain(rise_note).chain(ends).collect()
+        self.mass_balance().warning().into_iter().chain(rise_note).chain(helix).chain(ends).collect()
     }
 }

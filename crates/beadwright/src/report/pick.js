@@ -8,6 +8,7 @@ function pickLayer(x, y) {
     if (pass.start > shown.until) return;
     const { xy } = pass;
     for (let i = 0; i + 3 < xy.length; i += 2) {
+      if (isJump(pass, i / 2)) continue;
       const [dx, dy, px, py] = [xy[i + 2] - xy[i], xy[i + 3] - xy[i + 1], x - xy[i], y - xy[i + 1]];
       const length = dx * dx + dy * dy, part = length > 0 ? Math.min(Math.max((px * dx + py * dy) / length, 0), 1) : 0;
       const away = Math.hypot(px - part * dx, py - part * dy), reach = Math.max(after(pass, i / 2)[0] / 2, 4 / view.scale);
@@ -32,9 +33,13 @@ function sentenceOf(layer, index, number, seconds) {
   ];
 }
 
-function lengthOf({ xy }) {
+// Whether a piece is no bead but the jump to the next turn of a helix.
+const isJump = (pass, i) => after(pass, i)[0] <= 0.001;
+
+function lengthOf(pass) {
+  const { xy } = pass;
   let sum = 0;
-  for (let i = 2; i < xy.length; i += 2) sum += Math.hypot(xy[i] - xy[i - 2], xy[i + 1] - xy[i - 1]);
+  for (let i = 2; i < xy.length; i += 2) if (!isJump(pass, i / 2 - 1)) sum += Math.hypot(xy[i] - xy[i - 2], xy[i + 1] - xy[i - 1]);
   return sum;
 }
 

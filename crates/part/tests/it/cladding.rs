@@ -77,6 +77,10 @@ fn a_pipe_is_covered_outside_and_inside() {
     assert!(matches!(inner.chart, Chart::Cylinder(Cylinder { side: Side::Inner, .. })));
     let nothing = around(&base, cylinder(20.0, Side::Outer), [None; 2], 2.0).unwrap_err().to_string();
     assert!(nothing.contains("20 mm from the axis, facing outwards"), "{nothing}");
+    let beside = around(&base, cylinder(28.0, Side::Outer), [Some(100.0), None], 2.0).unwrap_err().to_string();
+    assert!(beside.contains("from 10.0 to 90.0 mm"), "{beside}");
+    let narrow = around(&base, cylinder(20.0, Side::Inner), [None; 2], 20.0).unwrap_err().to_string();
+    assert!(narrow.contains("has no room for 20 mm"), "{narrow}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use glam::DVec2;
 use planar::{Bounds, Polygon, Ring};
 use serde::{Deserialize, Serialize};
 
-/// How islands are filled that go all around an axis.
+/// How islands that go all around an axis are filled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -23,7 +23,7 @@ pub enum Around {
 pub struct Turn {
     /// Length of a turn, mm.
     pub length: f64,
-    /// So often the part can turn while the arc burns.
+    /// How many times the part can turn while the arc burns.
     pub most: f64,
 }
 
@@ -53,7 +53,7 @@ pub fn band(island: &Polygon, turn: f64, width: f64) -> Option<Bounds> {
 ///
 /// The first ring and the last one are whole, so the first step begins on metal and the last ring ends on it.
 pub fn helix(island: &Polygon, settings: &FillSettings<'_>) -> Option<Path> {
-    let Turn { length: turn, most } = settings.turn?;
+    let Turn { length: turn, most } = settings.turn.filter(|_| settings.infill_density >= 1.0)?;
     let bounds = band(island, turn, settings.bead.width)?;
     let high = bounds.size().y + 2.0 * settings.machining_allowance;
     let part = settings.stepover / settings.bead.width;
@@ -61,7 +61,7 @@ pub fn helix(island: &Polygon, settings: &FillSettings<'_>) -> Option<Path> {
     let rings = ((high / settings.bead.width - 1.0) / part).round().max(0.0);
     let width = high / (1.0 + rings * part);
     let (narrowest, widest) = settings.one_loop.width_limits;
-    let turns = rings + 1.0 + STEP * width / turn;
+    let turns = if rings > 0.0 { rings + 1.0 + STEP * width / turn } else { 1.0 };
     if !(narrowest..=widest).contains(&width) || turns > most {
         return None;
     }
@@ -78,7 +78,7 @@ pub fn helix(island: &Polygon, settings: &FillSettings<'_>) -> Option<Path> {
         }
     }
     let (kind, width) = (PassKind::Contour, Along::Same(width));
-    Some(Path { kind, closed: false, points, width, reversible: true })
+    Some(Path { kind, closed: false, points, width, reversible: false })
 }
 
 #[cfg(test)]
