@@ -97,7 +97,16 @@ fn weld_sections(
     }
     let planned_area = (covered.area() - bare.area).max(0.0);
     slice.islands = covered.into_polygons();
-    Filled { slice, fills: vec![fill], planned_area, reaches: Vec::new(), known: 0, milled: None, shared: false }
+    Filled {
+        slice,
+        fills: vec![fill],
+        planned_area,
+        reaches: Vec::new(),
+        known: 0,
+        has_helix: false,
+        milled: None,
+        shared: false,
+    }
 }
 
 /// What is left bare of curves is reported if it is this area or more, in squared bead widths.
