@@ -156,12 +156,8 @@ impl Model {
             !self.placing.turns(),
             "--onto: the part lies as its base does, so it is not turned by itself (--turn turns both)"
         );
-        let read = if self.placing.accept_damaged { model::import_damaged } else { model::import };
-        let import = |path: &Path| {
-            let bytes = convert::solid(path, file::model(path)?)?;
-            read(&bytes, task).with_context(|| path.display().to_string())
-        };
-        let placed = self.placing.placement().solid_onto(import(&self.model)?, import(base)?, profile.bead.width);
+        let (own, base) = (self.placing.import(&self.model, task)?, self.placing.import(base, task)?);
+        let placed = self.placing.placement().solid_onto(own, base, profile.bead.width);
         placed.with_context(|| self.model.display().to_string())
     }
 
@@ -172,18 +168,14 @@ impl Model {
 
     /// The solid in the coordinates and units of its file.
     pub(crate) fn drawn(&self, task: &Task) -> anyhow::Result<Mesh> {
-        let import = if self.placing.accept_damaged { model::import_damaged } else { model::import };
-        let bytes = convert::solid(&self.model, file::model(&self.model)?)?;
-        Ok(import(&bytes, task).with_context(|| self.model.display().to_string())?.mesh)
+        Ok(self.placing.import(&self.model, task)?.mesh)
     }
 
     /// The model, scaled to mm, turned, and placed on z = 0.
     pub(crate) fn placed(&self, profile: &Profile, use_as: Use, task: &Task) -> anyhow::Result<Import> {
         let bead_width = profile.bead.width;
         let context = || format!("{}", self.model.display());
-        let import = if self.placing.accept_damaged { model::import_damaged } else { model::import };
-        let bytes = convert::solid(&self.model, file::model(&self.model)?)?;
-        let import = import(&bytes, task).with_context(context)?;
+        let import = self.placing.import(&self.model, task)?;
         let placement = self.placing.placement();
         let part = if self.placing.turns() {
             let placed = placement.solid(import.clone(), bead_width).with_context(context)?.mesh;
@@ -197,6 +189,13 @@ impl Model {
 }
 
 impl Placing {
+    /// A solid as its file has it.
+    fn import(&self, path: &Path, task: &Task) -> anyhow::Result<Import> {
+        let import = if self.accept_damaged { model::import_damaged } else { model::import };
+        let bytes = convert::solid(path, file::model(path)?)?;
+        import(&bytes, task).with_context(|| path.display().to_string())
+    }
+
     /// Whether the part is turned according to how it lies.
     fn turns(&self) -> bool {
         self.lay_flat || self.orient

@@ -4,7 +4,7 @@ use beadwright::adapt::SeeError;
 use beadwright::bead::library::LibraryError;
 use beadwright::check;
 use beadwright::dialect::reading::ReadError;
-use beadwright::finding::{Finding, Severity, Words};
+use beadwright::finding::{Finding, Severity, Words, lacks_metal_below};
 use beadwright::model::{ImportError, PartError};
 use beadwright::plan::{PlanError, Summary};
 use beadwright::profile::Profile;
@@ -12,33 +12,24 @@ use beadwright::read_back::ReadBackError;
 
 /// What the command offers against the findings of a plan by this profile.
 pub(crate) fn words(profile: &Profile) -> Words {
-    let layers = &profile.layers;
-    if layers.are_level() {
-        of_level
-    } else if layers.bodies.is_empty() {
-        of_charted
-    } else {
-        of_bodies
-    }
+    profile.layers.by_lie(of_level, of_charted, of_bodies)
 }
 
 /// Bodies are already there: it matters where they are parted.
 fn of_bodies(kind: &str) -> Option<&'static str> {
-    match kind {
-        "high-start" | "nothing-below" | "in-the-air" | "over-unwelded" | "hanging-island" | "overhang" => {
-            Some("Other planes in the file of bodies part them elsewhere.")
-        }
-        other => of_level(other),
+    if lacks_metal_below(kind) {
+        Some("Other planes in the file of bodies part them elsewhere.")
+    } else {
+        of_level(kind)
     }
 }
 
 /// Layers that are not level begin where their chart does.
 fn of_charted(kind: &str) -> Option<&'static str> {
-    match kind {
-        "high-start" | "nothing-below" | "in-the-air" | "over-unwelded" | "hanging-island" | "overhang" => {
-            Some("--bodies divides the part into bodies that each have metal below.")
-        }
-        other => of_level(other),
+    if lacks_metal_below(kind) {
+        Some("--bodies divides the part into bodies that each have metal below.")
+    } else {
+        of_level(kind)
     }
 }
 

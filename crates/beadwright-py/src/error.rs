@@ -2,7 +2,7 @@
 
 use beadwright::bead::library::LibraryError;
 use beadwright::dialect::own::OwnError;
-use beadwright::finding::Words;
+use beadwright::finding::{Words, lacks_metal_below};
 use beadwright::model::{ImportError, PartError};
 use beadwright::profile::{Profile, ProfileError};
 use beadwright::read_back::ReadBackError;
@@ -59,33 +59,20 @@ fn place_in(error: &(dyn Error + 'static)) -> Option<String> {
 
 /// What the package offers against a kind of finding.
 pub(crate) fn words(profile: &Profile) -> Words {
-    let layers = &profile.layers;
-    if layers.are_level() {
-        of_level
-    } else if layers.bodies.is_empty() {
-        of_charted
-    } else {
-        of_bodies
-    }
+    profile.layers.by_lie(of_level, of_charted, of_bodies)
 }
 
 /// Bodies are already there: it matters where they are parted.
 fn of_bodies(kind: &str) -> Option<&'static str> {
-    match kind {
-        "high-start" | "nothing-below" | "in-the-air" | "over-unwelded" | "hanging-island" | "overhang" => {
-            Some("Other planes in layers.bodies part them elsewhere.")
-        }
-        other => of_level(other),
-    }
+    if lacks_metal_below(kind) { Some("Other planes in layers.bodies part them elsewhere.") } else { of_level(kind) }
 }
 
 /// Layers that are not level begin where their chart does.
 fn of_charted(kind: &str) -> Option<&'static str> {
-    match kind {
-        "high-start" | "nothing-below" | "in-the-air" | "over-unwelded" | "hanging-island" | "overhang" => {
-            Some("layers.bodies divides the part into bodies that each have metal below.")
-        }
-        other => of_level(other),
+    if lacks_metal_below(kind) {
+        Some("layers.bodies divides the part into bodies that each have metal below.")
+    } else {
+        of_level(kind)
     }
 }
 

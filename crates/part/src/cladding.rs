@@ -1,12 +1,12 @@
 //! Cladding: metal of an even thickness over the surface of a part that is there, and the chart in which its layers follow it.
 
-use crate::chart::warp::{self, WarpError};
+use crate::chart::warp::{self, STEEPEST, WarpError};
 use crate::chart::{Chart, Cylinder, Side, Surface, SurfaceError};
 use crate::model::Mesh;
 use crate::model::solid::Solid;
 use crate::task::Task;
 use glam::{DQuat, DVec2, DVec3};
-use planar::{FillRule, Join, Region, Ring};
+use planar::{Bounds, FillRule, Join, Polygon, Region, Ring};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -69,8 +69,6 @@ fn words(stretches: &[[f64; 2]]) -> String {
     stretches.iter().map(|[from, to]| format!("from {from:.1} to {to:.1} mm")).collect::<Vec<_>>().join(", ")
 }
 
-/// Where beads would lie farther apart than by this factor, nothing is clad: steeper than 17.7°.
-const STEEPEST: f64 = 1.05;
 /// Faces that look up: the cosine of their steepest slope, 45°. Scans are rougher than what was scanned.
 const FACING: f64 = 0.7;
 /// Faces are seen if they lie no deeper under the surface than this part of its grid.
@@ -102,60 +100,66 @@ pub fn over(
     thickness: f64,
     task: &Task,
 ) -> Result<Cladding, CladdingError> {
-    // First as it is seen, then only what can be clad: what falls away beside it does not pull its edges down.
     let near = area.map(|area| area.offset(BESIDE * step, Join::ROUND));
     let kept = |p: DVec2| near.as_ref().is_none_or(|near| near.contains(p));
     let facing = faces(base, |corners| normal(corners).dot(up) >= FACING);
     let facing = warp::divided(&facing, PIECE * step, task)?;
-    let whole = Surface::of_faces(&facing, up, step, kept).map_err(|error| match error {
+    let level = level(&facing, up, step, kept)?;
+    // What falls away beside those faces does not pull their edges down.
+    let surface = Arc::new(Surface::of_faces(&level, up, step, kept)?.rounded());
+    let chart = Chart::Surface(Arc::clone(&surface));
+    let seen = shadow(&level, &chart);
+    let (region, all) = match area {
+        Some(area) => (seen.intersection(area), area.area()),
+        None => (seen, shadow(&facing, &chart).area()),
+    };
+    warp::check_slope(&surface, places(&region, step / 2.0))?;
+    let polygons = region.simplified(TOLERANCE).into_polygons().into_iter();
+    let polygons: Vec<Polygon> = polygons.filter(|polygon| polygon.area() > step * step).collect();
+    if polygons.is_empty() {
+        return Err(CladdingError::NoArea);
+    }
+    let covered: f64 = polygons.iter().map(Polygon::area).sum();
+    let mesh = stacked(&polygons, &surface, thickness, task)?;
+    Ok(Cladding { mesh, chart, bare: (all - covered).max(0.0) })
+}
+
+/// Those of the faces that look up which are seen and not too steep, on a grid of `step`, mm, where it is kept.
+fn level(facing: &Mesh, up: DVec3, step: f64, kept: impl Fn(DVec2) -> bool + Copy) -> Result<Mesh, CladdingError> {
+    let whole = Surface::of_faces(facing, up, step, kept).map_err(|error| match error {
         SurfaceError::Nothing => CladdingError::NoArea,
         other => other.into(),
     })?;
-    let chart = Chart::Surface(Arc::new(whole.clone()));
-    let level = faces(&facing, |corners| {
+    let chart = Chart::Surface(Arc::new(whole));
+    let level = faces(facing, |corners| {
         let middle = chart.coordinates(corners.iter().sum::<DVec3>() / 3.0);
-        let seen = middle.z >= -SEEN * step && kept(middle.truncate());
-        seen && (whole.stretch(middle.truncate()) <= STEEPEST || normal(corners).dot(up) >= 1.0 / STEEPEST)
+        let is_seen = middle.z >= -SEEN * step && kept(middle.truncate());
+        is_seen && (chart.stretch(middle.truncate()) <= STEEPEST || normal(corners).dot(up) >= 1.0 / STEEPEST)
     });
-    if level.triangles.is_empty() {
-        return Err(CladdingError::NoArea);
-    }
-    task.check().map_err(WarpError::from)?;
-    let surface = Arc::new(Surface::of_faces(&level, up, step, kept)?.rounded());
-    let chart = Chart::Surface(Arc::clone(&surface));
-    let region = match area {
-        Some(area) => shadow(&level, &chart).intersection(area),
-        None => shadow(&level, &chart),
-    };
-    warp::check_slope(&surface, &places(&region, step / 2.0))?;
-    let (mut vertices, mut triangles, mut covered) = (Vec::new(), Vec::new(), 0.0);
-    for polygon in region.simplified(TOLERANCE).polygons().iter().filter(|polygon| polygon.area() > step * step) {
+    if level.triangles.is_empty() { Err(CladdingError::NoArea) } else { Ok(level) }
+}
+
+/// The solid over polygons on a surface, of a thickness, mm.
+fn stacked(polygons: &[Polygon], surface: &Surface, thickness: f64, task: &Task) -> Result<Mesh, WarpError> {
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    for polygon in polygons {
         let first = vertices.len() as u32;
         let flat = Solid::extrude(polygon, 0.0, thickness);
         let (flat, _) = Mesh::from_triangles(flat.vertices, flat.triangles);
-        let bent = warp::bent(&surface, &flat, TOLERANCE, task)?;
+        let bent = warp::bent(surface, &flat, TOLERANCE, task)?;
         vertices.extend(bent.vertices);
         triangles.extend(bent.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
-        covered += polygon.area();
     }
-    if triangles.is_empty() {
-        return Err(CladdingError::NoArea);
-    }
-    let all = match area {
-        Some(area) => area.area(),
-        None => shadow(&facing, &chart).area(),
-    };
-    let bare = (all - covered).max(0.0);
-    Ok(Cladding { mesh: Mesh::from_triangles(vertices, triangles).0, chart, bare })
+    Ok(Mesh::from_triangles(vertices, triangles).0)
 }
 
 /// Places of a region on a grid, mm.
-fn places(region: &Region, step: f64) -> Vec<DVec3> {
-    let Some(bounds) = region.bounds() else { return Vec::new() };
+fn places(region: &Region, step: f64) -> impl Iterator<Item = DVec3> {
+    let bounds = region.bounds().unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let counts = (bounds.size() / step).ceil();
-    let at = |i: usize, j: usize| bounds.min + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * step;
-    let rows = (0..counts.y as usize).flat_map(|j| (0..counts.x as usize).map(move |i| at(i, j)));
-    rows.filter(|p| region.contains(*p)).map(|p| p.extend(0.0)).collect()
+    let at = move |i: usize, j: usize| bounds.min + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * step;
+    let rows = (0..counts.y as usize).flat_map(move |j| (0..counts.x as usize).map(move |i| at(i, j)));
+    rows.filter(|p| region.contains(*p)).map(|p| p.extend(0.0))
 }
 
 fn normal([a, b, c]: &[DVec3; 3]) -> DVec3 {
@@ -191,39 +195,19 @@ pub fn around(
     if side == Side::Inner && thickness >= radius {
         return Err(CladdingError::Narrow { radius, thickness });
     }
-    let out = |p: DVec3| (p - through).reject_from_normalized(axis);
-    let sign = if side == Side::Outer { 1.0 } else { -1.0 };
-    // A face closes the gap to one that begins no farther than this behind it.
-    let together = |mut spans: Vec<[f64; 2]>| {
-        spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        spans.into_iter().fold(Vec::new(), |mut all: Vec<[f64; 2]>, span| {
-            match all.last_mut() {
-                Some(last) if span[0] <= last[1] + TOLERANCE => last[1] = last[1].max(span[1]),
-                _ => all.push(span),
-            }
-            all
-        })
-    };
-    let is_on_it = |corners: &[DVec3; 3]| {
-        let [a, b, c] = *corners;
-        let faces = (b - a).cross(c - a).dot(out((a + b + c) / 3.0)) * sign > 0.0;
-        faces && corners.iter().all(|p| (out(*p).length() - radius).abs() <= (ROUND * radius).min(AWAY))
-    };
-    let triangles = base.triangles.iter().map(|corners| corners.map(|corner| base.vertices[corner as usize]));
-    let round: Vec<[DVec3; 3]> = triangles.filter(is_on_it).collect();
-    let along = round.iter().map(|corners| corners.map(|p| axis.dot(p - through)));
-    let spans = along.map(|at| [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])]);
+    let round = round(base, &cylinder);
+    let whole = stretches(round.iter().map(|corners| along(corners, &cylinder)).collect());
     let [from, to] = [between[0].unwrap_or(f64::MIN), between[1].unwrap_or(f64::MAX)];
-    let whole = together(spans.collect());
     let within = whole.iter().map(|[low, high]| [low.max(from), high.min(to)]);
-    let stretches: Vec<[f64; 2]> = within.filter(|[low, high]| high - low > TOLERANCE).collect();
+    let found: Vec<[f64; 2]> = within.filter(|[low, high]| high - low > TOLERANCE).collect();
     let facing = if side == Side::Outer { "outwards" } else { "inwards" };
-    let [low, high] = match stretches[..] {
+    let [low, high] = match found[..] {
         [one] => one,
         [] if whole.is_empty() => return Err(CladdingError::NotRound { radius, facing }),
         [] => return Err(CladdingError::Beside { stretches: whole }),
-        _ => return Err(CladdingError::Gaps { stretches }),
+        _ => return Err(CladdingError::Gaps { stretches: found }),
     };
+    let sign = outwards(side);
     // Circles of chords lie inside: these are as far out at the middle of each chord.
     let [near, far] = [radius, radius + sign * thickness].map(|radius| radius / (PI / f64::from(SEGMENTS)).cos());
     let section = [[near, low], [far, low], [far, high], [near, high]].map(DVec2::from_array);
@@ -235,12 +219,47 @@ pub fn around(
     Ok(Cladding { mesh: Mesh::from_triangles(vertices, triangles).0, chart: Chart::Cylinder(cylinder), bare })
 }
 
+/// 1 where faces point away from the axis, -1 where they point to it.
+fn outwards(side: Side) -> f64 {
+    if side == Side::Outer { 1.0 } else { -1.0 }
+}
+
+/// The faces of a mesh that lie on a cylinder and point to its side.
+fn round(mesh: &Mesh, cylinder: &Cylinder) -> Vec<[DVec3; 3]> {
+    let out = |p: DVec3| (p - cylinder.through).reject_from_normalized(cylinder.axis);
+    let near = (ROUND * cylinder.radius).min(AWAY);
+    let is_on_it = |corners: &[DVec3; 3]| {
+        let points = normal(corners).dot(out(corners.iter().sum::<DVec3>() / 3.0)) * outwards(cylinder.side) > 0.0;
+        points && corners.iter().all(|p| (out(*p).length() - cylinder.radius).abs() <= near)
+    };
+    let triangles = mesh.triangles.iter().map(|corners| corners.map(|corner| mesh.vertices[corner as usize]));
+    triangles.filter(is_on_it).collect()
+}
+
+/// Where a face begins and ends along the axis, mm.
+fn along(corners: &[DVec3; 3], cylinder: &Cylinder) -> [f64; 2] {
+    let [a, b, c] = corners.map(|p| cylinder.axis.dot(p - cylinder.through));
+    [a.min(b).min(c), a.max(b).max(c)]
+}
+
+/// Spans put together where one goes on in the next, mm.
+fn stretches(mut spans: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut stretches: Vec<[f64; 2]> = Vec::new();
+    for span in spans {
+        match stretches.last_mut() {
+            Some(last) if span[0] <= last[1] + TOLERANCE => last[1] = last[1].max(span[1]),
+            _ => stretches.push(span),
+        }
+    }
+    stretches
+}
+
 /// Area of faces on a cylinder between two places along its axis, mm²: all of those in between, and of others the part that their
 /// length has in common.
 fn round_area(faces: &[[DVec3; 3]], cylinder: &Cylinder, [low, high]: [f64; 2]) -> f64 {
     let share = |corners: &[DVec3; 3]| {
-        let at = corners.map(|p| cylinder.axis.dot(p - cylinder.through));
-        let [from, to] = [at[0].min(at[1]).min(at[2]), at[0].max(at[1]).max(at[2])];
+        let [from, to] = along(corners, cylinder);
         let common = (to.min(high) - from.max(low)).max(0.0);
         let [a, b, c] = *corners;
         0.5 * (b - a).cross(c - a).length() * if to > from { common / (to - from) } else { 1.0 }

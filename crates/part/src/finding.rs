@@ -62,6 +62,12 @@ pub struct Finding {
 /// What helps against a kind of finding in the program that people use, as a sentence: flags, arguments, buttons.
 pub type Words = fn(kind: &str) -> Option<&'static str>;
 
+/// Whether findings of a kind say that there is no metal to weld on.
+pub fn lacks_metal_below(kind: &str) -> bool {
+    let kinds = ["high-start", "nothing-below", "in-the-air", "over-unwelded", "hanging-island", "overhang"];
+    kinds.contains(&kind)
+}
+
 /// Turns part of a sentence into a sentence.
 pub fn as_sentence(text: &str) -> String {
     let mut letters = text.chars();

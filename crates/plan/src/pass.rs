@@ -244,9 +244,14 @@ impl Pass {
             }
             along += length;
         }
-        let points: Vec<DVec3> = kept.first().map(|s| s.from).into_iter().chain(kept.iter().map(|s| s.to)).collect();
+        self.of_pieces(&kept)
+    }
+
+    /// The same pass, but open and along pieces each of which begins where the one before it ends.
+    pub fn of_pieces(&self, pieces: &[Segment]) -> Self {
+        let points = pieces.first().map(|s| s.from).into_iter().chain(pieces.iter().map(|s| s.to)).collect();
         // A value applies from its point to the next.
-        let values = |value: fn(&Segment) -> f64| Along::Each(kept.iter().chain(kept.last()).map(value).collect());
+        let values = |value: fn(&Segment) -> f64| Along::Each(pieces.iter().chain(pieces.last()).map(value).collect());
         let (width, pace) = (values(|s| s.width), values(|s| s.pace));
         Self { kind: self.kind, closed: false, points, width, pace, wait: self.wait }
     }

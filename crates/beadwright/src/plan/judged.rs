@@ -21,14 +21,7 @@ pub fn even<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
 /// A layer as it is welded, for the deposit model: with overlaps, hot starts, lead-outs, humps and craters where the
 /// profile has them, [`even`] and [`unrolled_once`].
 pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
-    let welded = match even(layer, profile) {
-        Cow::Borrowed(layer) => as_welded(layer, profile),
-        Cow::Owned(layer) => Cow::Owned(as_welded(&layer, profile).into_owned()),
-    };
-    match welded {
-        Cow::Borrowed(layer) => unrolled_once(layer, profile),
-        Cow::Owned(layer) => Cow::Owned(unrolled_once(&layer, profile).into_owned()),
-    }
+    then(then(even(layer, profile), profile, as_welded), profile, unrolled_once)
 }
 
 /// The same for a judgement of the layer alone, which knows one height of beads only: the two layers of a pair are judged as if
@@ -39,6 +32,18 @@ pub fn welded_alone<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
         wedge.single(&mut welded.to_mut().passes, profile.usual_height(layer.height));
     }
     welded
+}
+
+/// A layer changed once more, if the change is one.
+fn then<'a>(
+    layer: Cow<'a, Layer>,
+    profile: &Profile,
+    change: for<'l> fn(&'l Layer, &Profile) -> Cow<'l, Layer>,
+) -> Cow<'a, Layer> {
+    match layer {
+        Cow::Borrowed(layer) => change(layer, profile),
+        Cow::Owned(layer) => Cow::Owned(change(&layer, profile).into_owned()),
+    }
 }
 
 fn as_welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {

@@ -3,7 +3,7 @@
 
 use super::cover;
 use crate::chart::Chart;
-use crate::fill::around::{self, Turn};
+use crate::fill::around::{self, Around, Turn};
 use crate::fill::{Fill, Path, StrategyName};
 use crate::layer::Layer;
 use crate::pass::{Along, Pass, Segment};
@@ -20,9 +20,8 @@ const NOTHING: f64 = 1e-6;
 
 /// A turn of a slice, where islands that go all around are filled with a helix.
 pub(super) fn turn_of(slice: &Slice, profile: &Profile) -> Option<Turn> {
-    profile.fill.around.filter(|around| *around == around::Around::Helix)?;
     // Walls are welded along their middle.
-    if profile.fill.strategy == StrategyName::Wall {
+    if profile.fill.around != Some(Around::Helix) || profile.fill.strategy == StrategyName::Wall {
         return None;
     }
     let length = turn(&profile.layers.chart, middle(slice.z, slice.height, slice.half))?;
@@ -63,7 +62,7 @@ pub fn drawn<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
                 let (end, start) = (pass.end().unwrap_or_default(), piece.start().unwrap_or_default());
                 let jump = Segment { from: end, to: start, width: HAIR, pace: AT_ONCE };
                 let segments: Vec<Segment> = pass.segments().chain([jump]).chain(piece.segments()).collect();
-                *pass = of_segments(pass, &segments);
+                *pass = pass.of_pieces(&segments);
             }
             None => passes.push(piece),
         }
@@ -190,7 +189,7 @@ impl Bands {
             }
         }
         let waits = std::iter::once(pass.wait).chain(std::iter::repeat(0.0));
-        pieces.iter().zip(waits).map(|((_, piece), wait)| Pass { wait, ..of_segments(pass, piece) }).collect()
+        pieces.iter().zip(waits).map(|((_, piece), wait)| Pass { wait, ..pass.of_pieces(piece) }).collect()
     }
 
     /// A piece cut at the seams that it crosses.
@@ -240,15 +239,6 @@ impl Bands {
         let more = next.segments().map(|s| Segment { from: s.from + on, to: s.to + on, ..s });
         let more = more.enumerate().map(|(i, s)| if i == 0 { Segment { from: meet, ..s } } else { s });
         segments.extend(more);
-        *pass = Pass { wait: pass.wait, ..of_segments(pass, &segments) };
+        *pass = pass.of_pieces(&segments);
     }
-}
-
-/// An open pass along pieces that follow one another.
-fn of_segments(pass: &Pass, pieces: &[Segment]) -> Pass {
-    let points = pieces.first().map(|s| s.from).into_iter().chain(pieces.iter().map(|s| s.to)).collect();
-    // A value holds from its point to the next.
-    let along = |value: fn(&Segment) -> f64| Along::Each(pieces.iter().chain(pieces.last()).map(value).collect());
-    let (width, pace) = (along(|s| s.width), along(|s| s.pace));
-    Pass { kind: pass.kind, closed: false, points, width, pace, wait: pass.wait }
 }

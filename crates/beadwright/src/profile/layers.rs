@@ -90,6 +90,17 @@ impl LayersSection {
         self.charts().all(Chart::is_level)
     }
 
+    /// One of three: for level layers, for others of one body, or for several bodies.
+    pub fn by_lie<T>(&self, level: T, charted: T, bodies: T) -> T {
+        if self.are_level() {
+            level
+        } else if self.bodies.is_empty() {
+            charted
+        } else {
+            bodies
+        }
+    }
+
     /// How the layers of a layer's body lie in space.
     pub(crate) fn chart_of(&self, layer: &Layer) -> &Chart {
         self.bodies.get(layer.body).map_or(&self.chart, |body| &body.chart)

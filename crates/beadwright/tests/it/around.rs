@@ -25,11 +25,17 @@ fn pipe(axis: DVec3, [inner, outer]: [f64; 2], length: f64) -> Mesh {
     Mesh::from_triangles(vertices.iter().map(|p| turn * *p).collect(), triangles).0
 }
 
-/// Layers around an axis from a radius on.
+/// Layers around an axis from a radius on, cut open at 180°.
 fn around(axis: DVec3, radius: f64, side: &str) -> Profile {
+    around_from(axis, radius, side, 180)
+}
+
+/// The same, cut open at an angle, °.
+fn around_from(axis: DVec3, radius: f64, side: &str, seam: u32) -> Profile {
     let mut profile = profile("cmt-al2319-kuka");
     let [x, y, z] = axis.to_array();
-    profile.layers.chart = format!("cylinder:axis={x}/{y}/{z},radius={radius},side={side}").parse().unwrap();
+    profile.layers.chart =
+        format!("cylinder:axis={x}/{y}/{z},radius={radius},side={side},seam={seam}").parse().unwrap();
     profile.fill.around = Some(Around::Helix);
     // There is room for travels in a bore.
     profile.travel.clearance = 20.0;
@@ -61,7 +67,7 @@ fn a_layer_is_one_pass_that_fills_it() {
     ];
     for (k, (radii, length, side)) in cases.into_iter().enumerate() {
         let (axis, begins) = (axes[k % axes.len()], if side == "outer" { radii[0] } else { radii[1] });
-        let profile = around(axis, begins, side);
+        let profile = around_from(axis, begins, side, [180, 45, 301][k % 3]);
         let plan = planned(&pipe(axis, radii, length), &profile);
         let (case, metrics) = (format!("{radii:?} × {length} {side}"), &plan.summary.metrics);
         assert!(plan.layers.iter().all(|layer| layer.passes.len() == 1), "{case}");
@@ -176,4 +182,17 @@ fn a_table_that_turns_little_gets_no_helix() {
     };
     // Eleven rings.
     assert!(notes(190.0) && notes(1900.0) && !notes(2100.0));
+}
+
+/// However far beads reach beyond the outline, a layer that is cut open is taken as it is.
+#[test]
+fn passes_of_one_turn_are_left_whole() {
+    for strategy in ["loop", "contour", "zigzag"] {
+        let mut profile = around(DVec3::Z, 30.0, "outer");
+        profile.fill.strategy = strategy.parse().unwrap();
+        (profile.fill.around, profile.fill.machining_allowance) = (None, 6.0);
+        let plan = planned(&pipe(DVec3::Z, [30.0, 34.0], 60.0), &profile);
+        let cut = |layer: &&Layer| plan::Bands::of_layer(layer, &profile).is_some();
+        assert_eq!(plan.layers.iter().filter(cut).count(), 0, "{strategy}");
+    }
 }

@@ -71,9 +71,9 @@ const SHORT_BENT: f64 = 0.1;
 
 /// # Errors
 /// [`WarpError::Steep`] where layers at these coordinates cannot follow a surface.
-pub(crate) fn check_slope(surface: &Surface, coordinates: &[DVec3]) -> Result<(), WarpError> {
-    match coordinates.iter().find(|p| surface.stretch(p.truncate()) > STEEPEST) {
-        Some(p) => Err(WarpError::Steep { place: surface.at(*p).place, stretch: surface.stretch(p.truncate()) }),
+pub(crate) fn check_slope(surface: &Surface, mut coordinates: impl Iterator<Item = DVec3>) -> Result<(), WarpError> {
+    match coordinates.find(|p| surface.stretch(p.truncate()) > STEEPEST) {
+        Some(p) => Err(WarpError::Steep { place: surface.at(p).place, stretch: surface.stretch(p.truncate()) }),
         None => Ok(()),
     }
 }
@@ -130,14 +130,14 @@ fn over(surface: &Surface, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<M
     let divided = Divided::of(mesh, cut, task)?;
     let whole = Mesh::from_triangles(divided.vertices, divided.triangles).0;
     let unrolled = mapped(whole, |p| surface.coordinates(p));
-    check_slope(surface, &unrolled.vertices)?;
+    check_slope(surface, unrolled.vertices.iter().copied())?;
     Ok(unrolled)
 }
 
 /// Edges shorter than this part of the grid of a surface are straight over it.
 const SHORT_OVER: f64 = 0.02;
 /// Slopes on which beads would lie farther apart than by this factor are refused.
-const STEEPEST: f64 = 1.05;
+pub(crate) const STEEPEST: f64 = 1.05;
 
 fn around(polar: &dyn Polar, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
     let divided = Divided::of(mesh, |a, b| Ok(is_bent(a, b, polar, tolerance).then(|| a.midpoint(b))), task)?;
