@@ -1,24 +1,24 @@
-//! Lines of many points, fitted with a few straight pieces and circular arcs.
+//! Polylines of many points, fitted with a few straight pieces and circular arcs.
 //!
-//! From each point on, a piece is made as long as the tolerance allows. An arc passes through both ends of its piece
-//! and encloses the same area with the chord as the line does. A piece fits when every point of the line lies within
-//! the tolerance of it *and* the line runs along it without turning back, so that the two are nowhere farther apart
-//! than that, measured from either. The ends of pieces are points of the line.
+//! Each piece is made as long as the tolerance allows, and ends at a point of the line. An arc passes through both ends
+//! of its piece and encloses the same area with its chord as the line does. A piece fits when every point of the line
+//! lies within the tolerance of it *and* the line runs along it without turning back, so that the two are nowhere
+//! farther apart than the tolerance, measured from either.
 
 use crate::DVec2;
 use std::f64::consts::PI;
 
-/// Greatest sweep of an arc: controllers take less than half a turn, and the farther it turns, the less exactly three
-/// points define it.
+/// Greatest sweep of an arc, radians: controllers accept less than half a turn, and the larger the sweep, the less
+/// precisely three points define the arc.
 pub const MAX_SWEEP: f64 = 170.0 / 180.0 * PI;
 
-/// Least sweep of an arc: one degree, as ABB controllers require.
+/// Least sweep of an arc, radians: one degree, as ABB controllers require.
 pub const MIN_SWEEP: f64 = PI / 180.0;
 
 /// Shortest chord of an arc, mm: its three points lie 0.1 mm apart or more.
 const MIN_CHORD: f64 = 0.25;
 
-/// An arc replaces at least this many straight pieces: there is always an arc through three points.
+/// An arc replaces at least this many straight segments: there is always an arc through three points.
 const MIN_REPLACED: usize = 3;
 
 /// Largest radius of an arc, mm: flatter ones are lines to a controller.
@@ -31,24 +31,25 @@ pub struct Fit {
     pub tolerance: f64,
     /// Whether pieces may be arcs.
     pub arcs: bool,
-    /// Middle points of arcs are multiples of this, mm: the circle is that through the three rounded points.
+    /// The middle point of an arc is rounded to multiples of this, mm; the circle is the one through the three rounded
+    /// points.
     pub grid: f64,
 }
 
-/// A circular arc; the pieces say where it begins and ends.
+/// A circular arc; its piece gives the ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Arc {
-    /// A point in its middle, a multiple of [`Fit::grid`], mm.
+    /// The point in its middle, rounded to [`Fit::grid`], mm.
     pub via: DVec2,
     /// Its centre, mm.
     pub centre: DVec2,
     /// Its radius, mm.
     pub radius: f64,
-    /// The angle it turns, counter-clockwise above 0, radians.
+    /// The angle it turns through, radians; positive counter-clockwise.
     pub sweep: f64,
 }
 
-/// A piece of a fitted line, from the end of the piece before.
+/// A piece of a fitted line; it begins where the piece before it ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
     /// Index of the point where it ends.
@@ -58,7 +59,7 @@ pub struct Piece {
 }
 
 impl Arc {
-    /// The arc through three points; none when they lie on a line or it would turn by half a turn or more.
+    /// The arc through three points, mm; `None` when they lie on a line or the arc would turn by half a turn or more.
     ///
     /// ```
     /// use planar::{DVec2, arcs::Arc};
@@ -105,13 +106,13 @@ impl Fit {
         pieces
     }
 
-    /// The longest piece from the first of at least two points.
+    /// The longest piece that fits from the first of `points`, of which there must be at least two.
     pub fn next(&self, points: &[DVec2]) -> Piece {
         self.farthest(points, 0)
     }
 
-    /// The longest piece from a point. On a coarsely sampled arc even the first few pieces cannot be replaced by a
-    /// straight one, so an arc over the fewest pieces is also tried as a start.
+    /// The longest piece that fits from `start`. On a coarsely sampled arc a straight piece cannot replace even the
+    /// first few segments, so an arc over the fewest segments is also tried as a start.
     fn farthest(&self, points: &[DVec2], start: usize) -> Piece {
         let one = self.grown(points, start, Piece { end: start + 1, arc: None });
         let least = start + MIN_REPLACED;
@@ -183,8 +184,8 @@ impl Fit {
     }
 }
 
-/// The sweep of the arc that encloses this area with its chord, in squared half chords; `None` from half a turn on
-/// ([`MAX_SWEEP`] is checked later).
+/// Sweep, radians, of the arc that encloses `area` with its chord, the area in squared half chords; `None` for half a
+/// turn or more ([`MAX_SWEEP`] is checked later).
 fn sweep_of_area(area: f64) -> Option<f64> {
     let of = |sweep: f64| (sweep - sweep.sin()) / (2.0 * (sweep / 2.0).sin().powi(2));
     let (mut low, mut high) = (0.0, PI);

@@ -71,7 +71,7 @@ fn combine(subject: &Region, clip: &Region, rule: OverlayRule) -> Region {
     })
 }
 
-/// Regions whose boxes do not meet.
+/// The result where the bounding boxes do not meet; `None` where they do.
 fn combine_apart(subject: &Region, clip: &Region, rule: OverlayRule) -> Option<Region> {
     let meet = match (subject.bounds(), clip.bounds()) {
         (Some(a), Some(b)) => a.min.cmple(b.max + GRID_MM).all() && b.min.cmple(a.max + GRID_MM).all(),
@@ -86,7 +86,7 @@ fn combine_apart(subject: &Region, clip: &Region, rule: OverlayRule) -> Option<R
     }
 }
 
-/// Regions whose boundaries cross, but touch nowhere.
+/// The result where boundaries cross but nowhere touch; `None` where they touch.
 fn combine_by_winding(subject: &[Vec<GridPoint>], clip: &[Vec<GridPoint>], rule: OverlayRule) -> Option<Region> {
     let (level, allowed) = match rule {
         OverlayRule::Union => (1, 0..=2),
@@ -104,9 +104,9 @@ fn combine_by_winding(subject: &[Vec<GridPoint>], clip: &[Vec<GridPoint>], rule:
 pub(crate) fn unite_rings(rings: &[Ring], rule: FillRule) -> Region {
     let rings: Vec<Vec<GridPoint>> = rings.iter().map(ring_to_grid).collect();
     let by_winding = match rule {
-        // Where everything is wound around once or not at all, all rules agree.
+        // If every winding number is 0 or 1, all rules agree.
         FillRule::EvenOdd => region_within(in_mm(&distinct(&rings)), 1, 0..=1),
-        // Where nothing is wound around clockwise, the other two rules agree.
+        // If no winding number is negative, the other two rules agree.
         FillRule::NonZero => region_within(in_mm(&distinct(&rings)), 1, 0..),
         FillRule::Positive => region_within(in_mm(&distinct(&rings)), 1, ..),
     };

@@ -1,29 +1,30 @@
-//! Straight pieces in a tree of boxes, so that those that may meet are found without comparing all with all.
+//! Straight pieces in a tree of bounding boxes: finds those that may meet without comparing every pair.
 //!
-//! Pieces that follow each other share the smallest boxes, so an outline costs little more than its points. The boxes lie
-//! along the longest piece: scan lines then have flat boxes that meet little else, while boxes along x and y would
-//! cover each other wherever the lines are slanted.
+//! Consecutive pieces share the smallest boxes, so the tree of an outline is small. The boxes are aligned with the
+//! longest piece: scan lines then have flat boxes that meet few others, while boxes along x and y would overlap each
+//! other wherever the lines are slanted.
 
 use crate::Bounds;
 use glam::DVec2;
 use std::ops::Range;
 
-/// From one point to another, mm.
+/// A straight piece from one point to another, mm.
 pub type Piece = [DVec2; 2];
 
-/// Boxes are larger than their pieces by this fraction of the whole extent, so that rounding loses none.
+/// Boxes are enlarged by this fraction of the largest coordinate, so that rounding loses no piece.
 const ROUNDING: f64 = 1e-9;
-/// The smallest boxes hold no more pieces than this.
+/// Most pieces in one of the smallest boxes.
 const MOST: usize = 12;
 
-/// Pieces sorted into boxes.
+/// A tree of bounding boxes over pieces.
 pub struct Boxes {
-    /// Direction of the boxes.
+    /// Unit vector along which the boxes are aligned.
     axis: DVec2,
-    /// The pieces in the frame of the axis, and the box of each.
+    /// The pieces in the frame of `axis`, and the box of each.
     pieces: Vec<Piece>,
     boxes: Vec<Bounds>,
-    /// The tree: after each node come its first half and all below that, then its other half. Empty without pieces.
+    /// The tree, depth first: each node is followed by everything under its first child, then by its second child.
+    /// Empty without pieces.
     nodes: Vec<Node>,
 }
 
@@ -35,14 +36,14 @@ struct Node {
 
 #[derive(Debug, Clone, Copy)]
 enum Below {
-    /// The number of the node of the other half.
+    /// Two children: the first follows the node, this is the index of the second.
     Halves(u32),
-    /// These pieces.
+    /// A leaf: the pieces from the first index up to the second, exclusive.
     Pieces(u32, u32),
 }
 
 impl Boxes {
-    /// Sorts finite pieces.
+    /// Builds the tree; all coordinates must be finite.
     pub fn new(mut pieces: Vec<Piece>) -> Self {
         let axis = longest(&pieces).try_normalize().unwrap_or(DVec2::X);
         pieces.iter_mut().flatten().for_each(|p| *p = turned(axis, *p));
@@ -56,7 +57,7 @@ impl Boxes {
         Self { axis, pieces, boxes, nodes }
     }
 
-    /// Visits every pair of pieces whose boxes meet, once.
+    /// Visits each pair of pieces whose boxes meet once.
     ///
     /// ```
     /// use planar::{DVec2, boxes::Boxes};
@@ -100,7 +101,7 @@ impl Boxes {
                     self.pairs_of(i as usize, from..to, visit);
                 }
             }
-            // The first half of a node comes right after it.
+            // The first child of a node directly follows it.
             (Below::Halves(second), _) => {
                 self.pairs_between(one + 1, other, visit);
                 self.pairs_between(second as usize, other, visit);
@@ -121,7 +122,7 @@ impl Boxes {
         }
     }
 
-    /// Visits the pieces whose interior reaches across the height of a point before it along the axis.
+    /// Visits the pieces that a ray from the point, backwards along the axis, crosses.
     fn before(&self, point: DVec2, mut visit: impl FnMut(usize)) {
         let p = turned(self.axis, point);
         let crosses = |&number: &usize| {
@@ -148,20 +149,20 @@ impl Boxes {
         }
     }
 
-    /// Whether a point lies inside the rings that the first `edges` pieces are the edges of, by winding parity.
+    /// Whether a point lies inside the rings whose edges are the first `edges` pieces (even-odd rule).
     pub fn inside(&self, point: DVec2, edges: usize) -> bool {
         let mut inside = false;
         self.before(point, |number| inside ^= number < edges);
         inside
     }
 
-    /// How far a piece rises across the axis.
+    /// How far a piece rises perpendicular to the axis, mm.
     pub(crate) fn rise(&self, [a, b]: Piece) -> f64 {
         self.axis.perp_dot(b - a)
     }
 
-    /// How often closed rings, whose edges are the pieces, wind around the place just before a point along the axis that lies
-    /// on a piece.
+    /// Winding number of the closed rings whose edges are the pieces, just before `point` along the axis; `point` lies
+    /// on piece `on`.
     pub(crate) fn winding_before(&self, point: DVec2, on: usize) -> i32 {
         let mut winding = 0;
         self.before(point, |number| {
@@ -185,7 +186,7 @@ fn longest(pieces: &[Piece]) -> DVec2 {
     longest.1
 }
 
-/// The smallest boxes: a few pieces each that follow each other.
+/// The leaves: each holds a few consecutive pieces.
 fn leaves(pieces: &[Piece], boxes: &[Bounds]) -> Vec<Node> {
     let mut leaves = Vec::with_capacity(pieces.len() / MOST + 8);
     let mut first = 0;
@@ -200,7 +201,7 @@ fn leaves(pieces: &[Piece], boxes: &[Bounds]) -> Vec<Node> {
     leaves
 }
 
-/// Adds a tree of leaves, halved again and again in the direction in which their middles lie farthest apart.
+/// Adds the tree over some leaves, halved repeatedly along the axis in which their middles are most spread out.
 fn grow(nodes: &mut Vec<Node>, leaves: &mut [Node]) {
     let [first, rest @ ..] = leaves else { return };
     if rest.is_empty() {

@@ -15,7 +15,7 @@ pub enum Keep {
     Outside,
 }
 
-/// Joins pieces that the library split although nothing lies between them.
+/// Joins pieces that the library split although there is no gap between them.
 fn whole(pieces: Vec<Vec<GridPoint>>) -> Vec<Vec<GridPoint>> {
     let mut whole: Vec<Vec<GridPoint>> = Vec::with_capacity(pieces.len());
     for piece in pieces {

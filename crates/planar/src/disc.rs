@@ -1,4 +1,4 @@
-//! Whether there is room for a disc: a search over squares, which is cheaper than an offset where the answer is clear.
+//! Whether a disc fits into a polygon: a search over squares, cheaper than an offset where the answer is clear.
 
 use crate::polyline::distance_squared_to_segment;
 use crate::{Bounds, Join, Polygon};
@@ -6,15 +6,15 @@ use glam::DVec2;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Squares that are examined before an offset decides.
+/// Squares examined before an offset decides.
 const MOST_SQUARES: usize = 300;
 
-/// A square and the room about its middle.
+/// A square of the search, and the largest disc that can be centred in it.
 struct Square {
     middle: DVec2,
     /// Half its side, mm.
     half: f64,
-    /// Radius of the largest disc that may have its middle in it, mm.
+    /// Upper bound on the radius of a disc centred in the square, mm.
     bound: f64,
 }
 
@@ -39,7 +39,7 @@ impl PartialEq for Square {
 impl Eq for Square {}
 
 impl Polygon {
-    /// Whether a disc of this radius (mm) fits somewhere: whether an inward offset by the radius leaves anything.
+    /// Whether a disc of this radius (mm) fits inside: whether an inward offset by the radius leaves anything.
     pub fn holds_disc(&self, radius: f64) -> bool {
         let Some(bounds) = Bounds::of(self.outer.points().iter().copied()) else { return false };
         let size = bounds.max - bounds.min;

@@ -1,19 +1,19 @@
-//! Offsets drawn edge by edge, without a sweep over everything.
+//! Offsets drawn edge by edge, without a sweep over the whole plane.
 //!
-//! Every edge moves sideways. Where two edges move apart an arc or a tip joins them, where they move into each other they
-//! are cut off at their intersection; an edge between two such places that is used up is left out, which is exact since
-//! there the offset is what the half-planes of the edges have in common. Where an edge is used up by one cut alone, or edges
-//! turn back sharply, the path leads through the corner of the outline instead, and winds clockwise around what must not count.
-//! The offset is what the rings that result wind around ([`winding`](crate::winding)); what touches itself is left to the
-//! boolean ([`offset`](mod@crate::offset)).
+//! Every edge moves sideways. Where two edges move apart, an arc or a tip joins them; where they move into each other,
+//! they are cut off at their intersection. An edge used up between two such cuts is left out, which is exact because
+//! the offset there is the intersection of the edges' half-planes. Where an edge is used up by one cut alone, or edges
+//! turn back sharply, the path leads through the corner of the outline instead and winds clockwise around what must not
+//! count. The offset is what the resulting rings wind around ([`winding`](crate::winding)); rings that touch themselves
+//! are left to the boolean ([`offset`](mod@crate::offset)).
 
 use crate::winding::region_within;
 use crate::{Join, Region, Ring};
 use glam::DVec2;
 
-/// Sine of a turn between two edges that counts as none.
+/// Sine of the angle between two edges below which they count as parallel.
 const STRAIGHT: f64 = 1e-9;
-/// Edges that turn into each other more sharply than this (cosine) are led over the corner.
+/// Where the cosine of the turn between two edges is below this, the path leads over the corner.
 const SHARPEST: f64 = -0.9;
 
 /// The offset of a region, where its rings touch nowhere.
@@ -25,14 +25,14 @@ pub(crate) fn edgewise_offset(region: &Region, distance: f64, join: Join) -> Opt
 
 /// How edges that move apart are joined.
 struct Gaps {
-    /// Where the cosine of the turn is greater than this, by a tip.
+    /// Joined by a tip where the cosine of the turn is at least this,
     tip: f64,
-    /// Otherwise by an arc with a point every such angle, radians, if arcs are wanted.
+    /// and otherwise by an arc with one point per this angle, radians; `None` where no arcs are wanted.
     step: Option<f64>,
 }
 
-/// A tip that reaches no farther beyond the arc than this fraction of the tolerance is drawn in its place: one point instead of
-/// two.
+/// A tip is drawn in place of an arc if it reaches no farther beyond it than this fraction of the tolerance: one point
+/// instead of two.
 const TIP: f64 = 0.2;
 
 impl Gaps {
@@ -82,8 +82,8 @@ impl Corner {
     }
 }
 
-/// How an edge continues to a later one, if those between them are left out. `None` where they do not meet, and between
-/// neighbours where one runs back over the other.
+/// How an edge continues to a later one if those between them are left out. `None` where the two do not meet, or where
+/// neighbours run back over each other.
 fn corner(edges: &[Edge], i: usize, j: usize, distance: f64) -> Option<Corner> {
     let (edge, next) = (&edges[i], &edges[j]);
     let (sine, cosine) = (edge.way.perp_dot(next.way), edge.way.dot(next.way));
@@ -98,7 +98,7 @@ fn corner(edges: &[Edge], i: usize, j: usize, distance: f64) -> Option<Corner> {
     }
 }
 
-/// A ring offset by itself; it may cross itself.
+/// A ring offset on its own; the result may cross itself.
 fn moved(ring: &Ring, distance: f64, gaps: &Gaps) -> Option<Vec<DVec2>> {
     let mut edges: Vec<Edge> = ring
         .edges()
@@ -129,17 +129,17 @@ fn moved(ring: &Ring, distance: f64, gaps: &Gaps) -> Option<Vec<DVec2>> {
     Some(points)
 }
 
-/// What is left of the edges of a ring when those that are used up between two cuts are left out.
+/// The remaining edges of a ring, without those that are used up between two cuts.
 struct Left {
-    /// Their numbers.
+    /// Their indices.
     edges: Vec<usize>,
     /// How each continues to the next, the last one to the first.
     corners: Vec<Corner>,
 }
 
 impl Left {
-    /// `None` where an edge runs back over its neighbour. The edges are rotated so that they begin after a gap if there is
-    /// one: what is left out never reaches across it.
+    /// `None` where an edge runs back over its neighbour. The edges are rotated to begin after a gap if there is one,
+    /// since nothing is left out across a gap.
     fn of(edges: &mut [Edge], distance: f64) -> Option<Self> {
         let n = edges.len();
         let behind = (0..n).find(|&i| corner(edges, i, (i + 1) % n, distance) == Some(Corner::Gap));
@@ -191,7 +191,7 @@ impl Left {
         self.corners.last().copied().unwrap_or(Corner::Over)
     }
 
-    /// Where the last edge is used up by the cut before it alone, the path leads over that corner instead.
+    /// If the last edge is used up by the cut before it alone, leads the path over that corner instead.
     fn give_way(&mut self, edges: &[Edge], after: Corner) {
         let before = self.before();
         if let [.., _, last] = self.edges[..]
@@ -204,14 +204,14 @@ impl Left {
         }
     }
 
-    /// Continues from the last edge over all corners to another, along what was left out between them.
+    /// Continues from the last edge over all corners up to edge `to`, along the edges left out between them.
     fn lead_over(&mut self, to: usize) {
         let next = self.edges.last().map_or(to, |last| last + 1);
         self.edges.extend(next..=to);
         self.corners.resize(self.edges.len() - 1, Corner::Over);
     }
 
-    /// Cuts off the last edge and the first where they meet, if that leaves something of both.
+    /// Cuts off the last edge and the first where they meet, if something of both remains.
     fn cut_seam(&mut self, edges: &[Edge], distance: f64) {
         let ([after, .., before, seam], [first, .., last]) = (&mut self.corners[..], edges) else { return };
         let cut = corner(edges, edges.len() - 1, 0, distance).filter(|cut| !is_sharp(*cut, last, first));
@@ -220,7 +220,7 @@ impl Left {
     }
 }
 
-/// Whether two edges that are cut off turn back so sharply that the half-planes of their neighbours matter.
+/// Whether two edges that are cut off turn back so sharply that the half-planes of their neighbours matter too.
 fn is_sharp(corner: Corner, edge: &Edge, next: &Edge) -> bool {
     corner.is_cut() && edge.way.dot(next.way) < SHARPEST
 }
@@ -238,7 +238,7 @@ fn join_gap(points: &mut Vec<DVec2>, edge: &Edge, next: &Edge, gaps: &Gaps) -> O
         points.push(edge.moved + edge.meets(next).0 * edge.way);
         return Some(());
     }
-    // As the boolean does: whole steps, then what is left of the angle.
+    // As the boolean does: whole steps, then the rest of the angle.
     let (step, angle) = (gaps.step?, edge.way.angle_to(next.way));
     let count = ((angle.abs() - 1e-9).max(0.0) / step) as usize;
     let start = edge.moved + edge.length * edge.way;

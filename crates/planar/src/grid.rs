@@ -1,4 +1,4 @@
-//! The integer grid under booleans and offsets: 0.1 µm, 32 bits.
+//! The integer grid underneath booleans and offsets: 0.1 µm, 32 bits.
 
 use crate::{Polygon, Region, Ring};
 use glam::DVec2;
@@ -7,7 +7,7 @@ use i_overlay::i_float::int::point::IntPoint;
 /// Spacing of the integer grid, mm.
 pub const GRID_MM: f64 = 1e-4;
 
-/// Largest coordinate that booleans and offsets take, mm; what lies farther out is clamped.
+/// Largest coordinate that booleans and offsets accept, mm; anything farther out is clamped.
 pub const MAX_COORDINATE_MM: f64 = 50_000.0;
 
 pub(crate) type GridPoint = IntPoint<i32>;

@@ -1,4 +1,4 @@
-//! Convex hull (Graham, Andrew's variant) and the rectangle of least area (rotating calipers).
+//! Convex hull (Andrew's variant of Graham's scan) and the rectangle of least area (rotating calipers).
 
 use glam::DVec2;
 
@@ -20,7 +20,7 @@ impl OrientedRect {
     }
 }
 
-/// The convex hull, counter-clockwise, without points on its edges.
+/// The convex hull of `points`, counter-clockwise, without points on its edges.
 ///
 /// ```
 /// use planar::{DVec2, convex_hull};
@@ -40,7 +40,7 @@ pub fn convex_hull(points: &[DVec2]) -> Vec<DVec2> {
     hull
 }
 
-/// One side of the hull, its last point left out.
+/// One chain of the hull, without its last point.
 fn half_hull(points: impl Iterator<Item = DVec2>) -> Vec<DVec2> {
     let mut chain: Vec<DVec2> = Vec::new();
     for p in points {

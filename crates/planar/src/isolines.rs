@@ -1,7 +1,7 @@
-//! Lines along which the value of a field on a lattice is a whole number (marching squares).
+//! Lines along which a field on a lattice has a whole-number value (marching squares).
 //!
-//! The lines are closed as long as the field is below 1 at the rim of the lattice; they are nested and never cross. The
-//! higher ground lies to their left.
+//! The lines are closed if the field is below 1 at the rim of the lattice; they are nested and never cross. Higher
+//! values lie to their left.
 
 use crate::lattice::Lattice;
 use glam::DVec2;
@@ -18,7 +18,7 @@ pub struct Isoline {
 /// A place where a line crosses an edge of the lattice: level, then edge.
 type Key = u64;
 
-/// The closed lines of all whole values from 1 on, from low to high.
+/// The closed lines of all whole values from 1 upwards, in ascending order.
 ///
 /// ```
 /// use planar::{Bounds, DVec2, Lattice, isolines::isolines};
@@ -50,13 +50,13 @@ pub fn isolines(lattice: &Lattice, values: &[f32]) -> Vec<Isoline> {
     lines
 }
 
-/// The pieces of lines within the cells, each from the place where it enters to the place where it leaves.
+/// The segments of the lines within the lattice's cells, each from where it enters a cell to where it leaves it.
 fn pieces(lattice: &Lattice, values: &[f32]) -> Vec<(Key, Key)> {
     let columns = lattice.columns;
     let mut pieces = Vec::new();
     for row in 0..lattice.rows - 1 {
         for i in row * columns..(row + 1) * columns - 1 {
-            // Counter-clockwise, as are the sides between them.
+            // Corners counter-clockwise, as are the sides between them.
             let corners = [values[i], values[i + 1], values[i + columns + 1], values[i + columns]];
             let low = corners.iter().copied().fold(f32::INFINITY, f32::min);
             let high = corners.iter().copied().fold(f32::NEG_INFINITY, f32::max);
@@ -68,13 +68,13 @@ fn pieces(lattice: &Lattice, values: &[f32]) -> Vec<(Key, Key)> {
             for level in first..=high.floor() as u64 {
                 let above = corners.map(|value| value >= level as f32);
                 let key = |side: usize| level << 40 | sides[side] as u64;
-                // Counter-clockwise, a line enters through a side that begins on high ground and leaves through one that
-                // ends there.
+                // Going counter-clockwise, a line enters through a side that begins on high ground and leaves through
+                // one that ends there.
                 let enters = |side: &usize| above[*side] && !above[(side + 1) % 4];
                 let leaves = |side: &usize| !above[*side] && above[(side + 1) % 4];
                 let middle = corners.iter().sum::<f32>() / 4.0 >= level as f32;
                 for enter in (0..4).filter(enters) {
-                    // At a saddle the value in the middle decides whether the high corners are connected.
+                    // At a saddle, the mean of the corners decides whether the high corners are connected.
                     let turn = |k: usize| (enter + k) % 4;
                     let order = if middle { [turn(1), turn(2), turn(3)] } else { [turn(3), turn(2), turn(1)] };
                     if let Some(leave) = order.into_iter().find(leaves) {

@@ -11,23 +11,23 @@ use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::cmp::Ordering;
 
-/// A ladder that ends freely and is shorter than this many times its first rung leads into a corner. A right angle
-/// gives 0.5, a corner of 60° 0.87.
+/// A free-ended ladder shorter than this many times the rung where it begins leads into a corner. A right angle gives
+/// 0.5, a corner of 60° 0.87.
 pub const CORNER: f64 = 1.2;
 
-/// Two opposite points of the boundary.
+/// Two opposite points of the boundary, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rung {
     /// On the left as the ladder runs.
     pub left: DVec2,
     /// On the right.
     pub right: DVec2,
-    /// Distance between the two sides here, mm: shorter than the rung where that is oblique.
+    /// Distance between the two sides here, mm: less than the rung's length where the rung is oblique.
     pub thickness: f64,
 }
 
 impl Rung {
-    /// The point between both sides.
+    /// The point halfway between the sides.
     pub fn middle(&self) -> DVec2 {
         (self.left + self.right) / 2.0
     }
@@ -37,12 +37,12 @@ impl Rung {
     }
 }
 
-/// Rungs one after another.
+/// A sequence of rungs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ladder {
     /// At least one.
     pub rungs: Vec<Rung>,
-    /// Whether its beginning and its end are free, not at a fork.
+    /// Whether its beginning and its end are free ends rather than at a fork.
     pub free: [bool; 2],
     /// Whether it closes to a loop.
     pub closed: bool,
@@ -61,7 +61,7 @@ impl Ladder {
     }
 }
 
-/// The ladders of a region whose boundary is sampled at least every `spacing` (mm), without those into corners.
+/// The ladders of a region, without those into corners; the boundary is sampled at least every `spacing` (mm).
 ///
 /// ```
 /// use planar::{DVec2, Polygon, Region, Ring, ladder::ladders};
@@ -80,7 +80,7 @@ pub fn ladders(region: &Region, spacing: f64) -> Vec<Ladder> {
 /// Triangles inside a polygon.
 struct Mesh {
     points: Vec<DVec2>,
-    /// Corners, and for the edge that starts at each the neighbour across it.
+    /// Corners, and for the edge that starts at each corner the neighbouring triangle.
     triangles: Vec<([usize; 3], [Option<usize>; 3])>,
 }
 
@@ -97,7 +97,7 @@ impl Mesh {
             edges.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
         }
         let spots = vertices.iter().map(|p| Point2::new(p.x, p.y)).collect();
-        // Edges that cross others, if rounding made any, are left out.
+        // Edges that cross others, possible only by rounding, are left out.
         let triangulation = ConstrainedDelaunayTriangulation::<Point2<f64>>::try_bulk_load_cdt(spots, edges, |_| {});
         let Ok(triangulation) = triangulation else { return Self { points: Vec::new(), triangles: Vec::new() } };
         let points = triangulation.vertices().map(|v| DVec2::new(v.position().x, v.position().y)).collect();
@@ -127,15 +127,16 @@ impl Mesh {
         self.triangles[triangle].1.iter().flatten().count()
     }
 
-    /// The rung by which a path leaves a triangle through an edge: the triangle runs counter-clockwise, so the end of
-    /// the edge is on the left on the way out.
+    /// The rung by which a path leaves a triangle through an edge: the triangle runs counter-clockwise, so on the way
+    /// out the end of the edge is on the left.
     fn rung(&self, triangle: usize, k: usize) -> Rung {
         let (right, left) = self.edge(triangle, k);
         let (left, right) = (self.points[left], self.points[right]);
         Rung { left, right, thickness: left.distance(right).min(self.altitude(triangle)) }
     }
 
-    /// Distance of the corner of a sleeve triangle from its boundary edge: the distance between the sides.
+    /// Distance of the corner of a sleeve triangle (two inner edges) from its boundary edge: the distance between the
+    /// sides. Infinite for other triangles.
     fn altitude(&self, triangle: usize) -> f64 {
         if self.links(triangle) != 2 {
             return f64::INFINITY;
@@ -149,7 +150,7 @@ impl Mesh {
     fn ladders(&self) -> Vec<Ladder> {
         let mut ladders = Vec::new();
         let mut used = vec![false; self.triangles.len()];
-        // From every fork and every end; only loops are left then.
+        // From every fork and every end; only loops remain after that.
         for start in 0..self.triangles.len() {
             if self.links(start) != 2 {
                 used[start] = true;
@@ -168,11 +169,12 @@ impl Mesh {
         prune(ladders)
     }
 
-    /// The ladder that leaves a triangle through one of its edges, until a fork or an end.
+    /// The ladder that leaves a triangle through one of its edges, up to a fork or an end. `None` where there is none
+    /// or it was found from its other end.
     fn walk(&self, start: usize, k: usize, used: &mut [bool]) -> Option<Walked> {
         let (mut from, mut k) = (start, k);
         let mut next = self.triangles[from].1[k]?;
-        // A ladder between two forks is found from both: it is walked once, from the lower number.
+        // A ladder between two forks is found from both ends, but walked only once.
         let mut rungs = vec![self.rung(from, k)];
         let closed = loop {
             let entry = self.triangles[next].1.iter().position(|n| *n == Some(from)).unwrap_or(0);
@@ -201,16 +203,16 @@ impl Mesh {
     }
 }
 
-/// A ladder with the triangles at its ends.
+/// A ladder with the triangles at its ends, by index.
 #[derive(Debug, Clone)]
 struct Walked {
     ladder: Ladder,
     forks: [usize; 2],
 }
 
-/// Removes the ladders that run into corners, fork by fork, and joins two ladders where only those are left at a fork.
-/// Where every ladder at a fork runs into a corner, only the shortest is removed: the shape is a blob, and the rest crosses
-/// it.
+/// Removes the ladders that run into corners, fork by fork, and joins the other two where only two remain at a fork. If
+/// all ladders at a fork run into corners, only the shortest is removed: the shape is compact, and the others run
+/// across it.
 fn prune(mut walked: Vec<Walked>) -> Vec<Ladder> {
     loop {
         let corners: Vec<usize> = (0..walked.len()).filter(|&i| corner_length(&walked[i]).is_some()).collect();
@@ -254,13 +256,13 @@ fn inner_fork(walked: &Walked) -> usize {
     if walked.ladder.free[0] { walked.forks[1] } else { walked.forks[0] }
 }
 
-/// The ladders that meet at a fork, each with its end that does.
+/// The ladders that meet at a fork, each with the end (0 or 1) that lies there.
 fn ends_at(walked: &[Walked], fork: usize) -> Vec<(usize, usize)> {
     let ends = (0..walked.len()).flat_map(|i| [(i, 0), (i, 1)]);
     ends.filter(|&(i, end)| walked[i].forks[end] == fork && !walked[i].ladder.free[end]).collect()
 }
 
-/// Makes one ladder of two that meet.
+/// Joins two ladders that meet into one.
 fn join(walked: &mut Vec<Walked>, (i, i_end): (usize, usize), (j, j_end): (usize, usize)) {
     let turn = |w: &mut Walked| {
         w.ladder.reverse();

@@ -1,10 +1,10 @@
-//! A square lattice of points and values on it: what distance fields, isolines and smoothing work on.
+//! A square lattice of points, and values at them: the basis of distance fields, isolines and smoothing.
 
 use crate::Bounds;
 use glam::DVec2;
 
-/// Points `step` apart in x and y, with equally many columns and rows on either side of the middle: turned by a right angle
-/// it is the same lattice.
+/// Points `step` apart in x and y, as many columns, and as many rows, on one side of the middle as on the other: a part
+/// turned by a right angle gets the same lattice, turned.
 ///
 /// ```
 /// use planar::{Bounds, DVec2, Lattice};
@@ -29,8 +29,8 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// The lattice about the middle of a box grown by `margin` (mm); on either side of the middle it has a multiple of
-    /// `multiple` points, so that it can be made coarser by halves.
+    /// The lattice centred on a box grown by `margin` (mm). On either side of the middle it has a multiple of
+    /// `multiple` points, so that it can be halved repeatedly.
     pub fn covering(bounds: &Bounds, margin: f64, step: f64, multiple: usize) -> Self {
         let half = |size: f64| ((size / 2.0 + margin) / (step * multiple as f64)).ceil() as usize * multiple;
         let size = bounds.size();
@@ -48,7 +48,7 @@ impl Lattice {
         self.len() == 0
     }
 
-    /// Every second point of it.
+    /// The lattice of every second point.
     pub fn halved(&self) -> Self {
         let half = |count: usize| (count - 1) / 2 + 1;
         Self { step: 2.0 * self.step, columns: half(self.columns), rows: half(self.rows), ..*self }
@@ -59,22 +59,22 @@ impl Lattice {
         self.middle - DVec2::new((self.columns / 2) as f64, (self.rows / 2) as f64) * self.step
     }
 
-    /// Where a point lies.
+    /// Position of a point, mm.
     pub fn place(&self, column: usize, row: usize) -> DVec2 {
         self.low() + DVec2::new(column as f64, row as f64) * self.step
     }
 
-    /// Where the point with that index lies; points are numbered row by row.
+    /// Position of the point with this index, mm; points are numbered row by row.
     pub fn place_of(&self, index: usize) -> DVec2 {
         self.place(index % self.columns, index / self.columns)
     }
 
-    /// A place in steps from the lowest point.
+    /// A position in units of `step`, from the lowest point.
     pub fn in_steps(&self, p: DVec2) -> DVec2 {
         (p - self.low()) / self.step
     }
 
-    /// The value at `p`, interpolated linearly in x and in y; outside the lattice, that of the nearest place on it.
+    /// The value at `p`, interpolated bilinearly; outside the lattice, the value at the nearest position on it.
     pub fn value_at(&self, values: &[f32], p: DVec2) -> f64 {
         let at = self.in_steps(p).clamp(DVec2::ZERO, self.last());
         let cell = whole(at).min(self.last() - 1.0);
@@ -104,7 +104,7 @@ impl Lattice {
         DVec2::new((self.columns - 1) as f64, (self.rows - 1) as f64)
     }
 
-    /// For each point whether it lies inside the even-odd region of those rings.
+    /// For each point, whether it lies inside the rings (even-odd rule).
     pub fn inside<'a>(&self, rings: impl IntoIterator<Item = &'a crate::Ring>) -> Vec<bool> {
         let mut inside = vec![false; self.len()];
         let crossings = crate::rows::crossings(rings, self.low().y, self.step, self.rows);
@@ -122,7 +122,7 @@ impl Lattice {
     }
 }
 
-/// Coordinates that are 0 or more, rounded down: a cast is quicker than `floor` in builds for processors of all ages.
+/// Rounds coordinates that are 0 or more down: for baseline CPU targets a cast is faster than `floor`.
 fn whole(at: DVec2) -> DVec2 {
     at.as_uvec2().as_dvec2()
 }

@@ -1,7 +1,7 @@
 //! Two-dimensional geometry for planning: regions with holes, booleans, offsets, scan lines, hulls.
 //!
-//! Everything is in millimetres as `f64` ([`glam::DVec2`]); nothing here is about welding, and no type of the polygon
-//! library underneath leaves the crate.
+//! Everything is in millimetres as `f64` ([`glam::DVec2`]); nothing here is about welding, and the crate exposes no
+//! type of the polygon library underneath.
 //!
 //! | file | what it holds |
 //! | --- | --- |
@@ -30,7 +30,7 @@
 //! 0.07 µm, wherever it lies; coordinates may reach ±[`MAX_COORDINATE_MM`] = 50 m and are clamped there.
 //! An offset is then simplified by [`offset::SIMPLIFY_MM`].
 //!
-//! Most operations never get there: where boundaries cross but touch nowhere, the winding number decides (`winding`), on
+//! Most operations never need it: where boundaries cross but nowhere touch, the winding number decides (`winding`), on
 //! rings that an offset draws edge by edge (`edgewise`). The result is rounded to the same grid.
 
 pub mod arcs;

@@ -1,11 +1,10 @@
-//! The medial axis: the middles of the largest discs inside a polygon, with their radii.
+//! The medial axis: the centres of the maximal inscribed discs of a polygon, with their radii.
 //!
-//! A wall's centre-line and local thickness (2 × radius), and what a variable bead must fill. All lengths in mm,
-//! all angles in radians.
+//! It gives a wall's centre-line and local thickness (2 × radius). All lengths in mm, all angles in radians.
 //!
 //! # How
 //!
-//! 1. The outline goes through the grid of the crate once (union, even-odd): clean rings, 0.07 µm off at most.
+//! 1. The outline passes through the grid of the crate once (union, even-odd): clean rings, at most 0.07 µm off.
 //! 2. Points are put on it, `spacing` apart and closer towards convex corners, and joined by a constrained Delaunay
 //!    triangulation (`spade`). The triangles inside, linked across their inner sides (*chords*), have the very
 //!    topology of the polygon: one connected piece, one loop round every hole.
@@ -21,10 +20,10 @@
 //!
 //! # What is kept
 //!
-//! The *object angle* of a node is the angle between the two places that its disc touches, seen from its middle
-//! (Attali and Montanvert 1996, the θ of the θ-SMA of Foskey, Lin and Manocha 2003). 180° between parallel
-//! walls; on the branch into a corner of interior angle θ it is 180° − θ, and the radius falls there by sin(θ/2)
-//! per mm of branch: dr/ds = cos(object angle / 2) (Blum and Nagel 1978). Two rules use it:
+//! The *object angle* of a node is the angle between the two points its disc touches, seen from its centre (Attali and
+//! Montanvert 1996, the θ of the θ-SMA of Foskey, Lin and Manocha 2003). It is 180° between parallel walls; on the
+//! branch into a corner of interior angle θ it is 180° − θ, and the radius falls there by sin(θ/2) per mm of branch:
+//! dr/ds = cos(object angle / 2) (Blum and Nagel 1978). Two rules use it:
 //!
 //! - [`MedialOptions::min_angle`] (50°): free ends below it are noise and never appear, and neither do free branches
 //!   whose radius grows as fast from end to end. An arc sampled every 5° makes 5°; only corners blunter than 130° go
@@ -56,15 +55,16 @@ const MERGE_MM: f64 = 1e-3;
 /// The finest spacing, mm.
 const LEAST_SPACING_MM: f64 = 1e-3;
 
-/// An outline that touches itself and cannot be triangulated is shrunk by each of these in turn until it can be, mm.
+/// An outline that touches itself and cannot be triangulated is shrunk by each of these distances in turn until it can
+/// be, mm.
 const SHRINK_MM: [f64; 4] = [0.0, 1e-3, 1e-2, 1e-1];
 
 /// How finely the axis is sampled, and what counts as noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MedialOptions {
-    /// The boundary is sampled at most this far apart, mm, and the nodes of the axis lie about as dense; 0.25.
+    /// Greatest distance between samples of the boundary, mm; the nodes of the axis are about as dense. Default 0.25.
     pub spacing: f64,
-    /// Free ends whose object angle is below this, rad, are noise; 50°.
+    /// Free ends whose object angle is below this, rad, are noise. Default 50°.
     pub min_angle: f64,
 }
 
@@ -75,14 +75,14 @@ impl Default for MedialOptions {
 }
 
 impl MedialOptions {
-    /// With the default where the spacing is not a length, and never finer than [`LEAST_SPACING_MM`].
+    /// Replaces a spacing that is not a length by the default, and never goes below [`LEAST_SPACING_MM`].
     fn sane(self) -> Self {
         let spacing = if self.spacing > 0.0 { self.spacing } else { Self::default().spacing };
         Self { spacing: spacing.max(LEAST_SPACING_MM), ..self }
     }
 }
 
-/// A largest inscribed disc.
+/// A maximal inscribed disc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
     /// Its middle.
@@ -107,7 +107,7 @@ pub struct Branch {
 pub struct MedialAxis {
     /// The curves.
     pub branches: Vec<Branch>,
-    /// Where branches meet or end. A loop without junctions has one somewhere; the axis of a disc is one without
+    /// Where branches meet or end. A loop without junctions is given one; the axis of a disc is one junction without
     /// branches.
     pub junctions: Vec<Node>,
 }
@@ -125,8 +125,8 @@ impl Branch {
 }
 
 impl MedialAxis {
-    /// The medial axis inside `polygon`. Rings may cross, touch or run either way: inside is where
-    /// [`Polygon::contains`] says so.
+    /// The medial axis of `polygon`. Rings may cross, touch or run either way: inside is where [`Polygon::contains`]
+    /// says so.
     ///
     /// ```
     /// use planar::medial::{CORNER, MedialAxis, MedialOptions};
@@ -149,7 +149,7 @@ impl MedialAxis {
         axis
     }
 
-    /// The medial axis inside every polygon of `region`, in their order.
+    /// The medial axes of all polygons of `region`, in their order.
     pub fn of_region(region: &Region, options: &MedialOptions) -> Self {
         let mut axis = Self::default();
         for polygon in region.polygons() {
@@ -163,7 +163,7 @@ impl MedialAxis {
         self.branches.iter().map(Branch::length).sum()
     }
 
-    /// How many branch ends meet at each junction; 1 is a free end, a closed loop counts twice.
+    /// How many branch ends meet at each junction; 1 is a free end, a closed loop counts as two.
     pub fn degrees(&self) -> Vec<usize> {
         let mut degrees = vec![0; self.junctions.len()];
         for branch in &self.branches {

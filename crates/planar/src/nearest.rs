@@ -1,9 +1,9 @@
 //! Which of many segments is nearest to each point of a lattice: distance fields and Voronoi cells.
 //!
-//! Points beside a segment are measured against it; from there the nearest segment spreads from point to neighbouring
-//! point, in two sweeps over the rows (Danielsson 1980, with segments in place of points). It spreads only over the
-//! wanted points: segments beyond a gap of unwanted points are not seen. The distance to the segment found is exact; in
-//! rare places, where three cells meet, another segment is nearer, by less than half a step.
+//! The distance to a segment is measured at the points beside it; from there the nearest segment spreads from point to
+//! neighbouring point, in two sweeps over the rows (Danielsson 1980, with segments in place of points). It spreads only
+//! over the wanted points: segments beyond a gap of unwanted points are not seen. The distance to the segment found is
+//! exact; in rare places, where three Voronoi cells meet, another segment may be nearer, by less than half a step.
 
 use crate::lattice::Lattice;
 use glam::{DVec2, Vec2};
@@ -16,7 +16,7 @@ pub const NONE: u32 = u32::MAX;
 pub struct Nearest {
     /// Index of the segment, or [`NONE`].
     pub segment: Vec<u32>,
-    /// Distance from it, mm; infinite where none is known.
+    /// Distance to it, mm; infinite where none is known.
     pub distance: Vec<f32>,
 }
 
@@ -28,7 +28,7 @@ struct Segment {
 }
 
 impl Segment {
-    /// Relative to the lattice's middle: small numbers for 32 bits.
+    /// Relative to the lattice's middle, to keep numbers small enough for 32-bit floats.
     fn new(a: DVec2, b: DVec2, lattice: &Lattice) -> Self {
         let way = (b - a).as_vec2();
         let square = way.length_squared();
@@ -47,7 +47,7 @@ impl Segment {
     }
 }
 
-/// Spreads the nearest of `segments` over the points for which `wanted` holds.
+/// The nearest of `segments` (mm) to each point for which `wanted` holds.
 pub fn nearest(lattice: &Lattice, segments: &[(DVec2, DVec2)], wanted: &[bool]) -> Nearest {
     let mut sweep = Sweep {
         columns: lattice.columns,
@@ -90,7 +90,7 @@ impl Sweep<'_> {
             let (from, to) = (lattice.in_steps(a), lattice.in_steps(b));
             let count = ((to - from).abs().max_element() * 1.5).ceil().max(1.0) as usize;
             for k in 0..=count {
-                // On both sides of a segment that lies on a row of points, too: those on one side may not be wanted.
+                // Also on both sides of a segment that lies on a row of points: those on one side may not be wanted.
                 let point = from.lerp(to, k as f64 / count as f64).round();
                 for (dx, dy) in [-1.0, 0.0, 1.0].into_iter().flat_map(|dx| [-1.0, 0.0, 1.0].map(|dy| (dx, dy))) {
                     let at = point + DVec2::new(dx, dy);
@@ -116,7 +116,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Takes the nearest segments from the neighbouring row, then along the row both ways.
+    /// Takes over the nearest segments from the neighbouring row, then along the row both ways.
     fn row(&mut self, row: usize, beside: Option<usize>) {
         let columns = self.columns;
         if let Some(beside) = beside {

@@ -13,7 +13,7 @@ use i_overlay::mesh::int::outline::offset::IntOutlineOffset;
 use i_overlay::mesh::int::style::{IntLineJoin, IntOutlineStyle};
 use i_overlay::mesh::math::MathMode;
 
-/// Offsets are simplified by this, mm.
+/// Tolerance by which offsets are simplified, mm.
 pub const SIMPLIFY_MM: f64 = 0.003;
 
 /// Default distance between an arc and its chords, mm.
@@ -22,10 +22,10 @@ pub const ARC_TOLERANCE_MM: f64 = 0.005;
 /// Offset results smaller than this are dropped, mm².
 const MIN_AREA_MM2: f64 = 1e-4;
 
-/// How the gap opens at a corner that turns away from the offset.
+/// How the gap is closed at a corner whose edges move apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Join {
-    /// An arc about the corner, its chords within the tolerance (mm): the exact set of points at a distance.
+    /// An arc about the corner, its chords within this tolerance (mm): the exact set of points at a distance.
     Round(f64),
     /// The two lines prolonged, cut off where the tip would reach farther than this multiple of the distance.
     Miter(f64),
@@ -37,7 +37,7 @@ impl Join {
 
     /// The angle between the points of an arc whose chords stay within a tolerance (mm), radians.
     pub(crate) fn step(tolerance: f64, distance: f64) -> f64 {
-        // The boolean takes no finer steps than 1024 a turn.
+        // The boolean takes no finer steps than 1024 per turn.
         const LEAST: f64 = std::f64::consts::TAU / 1024.0;
         (2.0 * (1.0 - tolerance / distance.abs().max(tolerance)).acos()).clamp(LEAST, std::f64::consts::FRAC_PI_4)
     }
@@ -98,15 +98,15 @@ impl Polygon {
         Region::from(self.clone()).offset(distance, join)
     }
 
-    /// Where the centre of a disc of this radius (mm) that stays inside may lie: [`Self::offset`] inwards, but not simplified, so
-    /// that areas are exact.
+    /// Where the centre of a disc of this radius (mm) inside the polygon may lie: [`Self::offset`] inwards, but not
+    /// simplified, so that areas are exact.
     pub fn centres_of_disc(&self, radius: f64, join: Join) -> Region {
         Region::from(self.clone()).unsimplified_offset(-radius, join)
     }
 
-    /// Area (mm²) that a disc of this radius (mm) reaches without leaving the polygon, given where its centre may lie: area +
-    /// radius · perimeter + π radius² · euler of that region (Steiner). `None` where the region is connected differently
-    /// from the polygon: then parts of it may reach the same points.
+    /// Area (mm²) that a disc of this radius (mm) can reach inside the polygon, given where its centre may lie: area +
+    /// radius · perimeter + π radius² · Euler characteristic of that region (Steiner's formula). `None` where that
+    /// region is not one polygon with as many holes as this one: separate parts may then reach the same points.
     ///
     /// ```
     /// use planar::{DVec2, Join, Polygon, Ring};
@@ -124,24 +124,24 @@ impl Polygon {
         (part.holes.len() == self.holes.len()).then(|| centre.area() + radius * centre.perimeter() + round)
     }
 
-    /// Whether a disc of this radius (mm) that rolls through the polygon, its centre within `centre`, nowhere leaves more than
-    /// `smallest` (mm²) empty in one place. Corners between long edges may be as empty as they must be; "no" may be
-    /// wrong where many other corners together are left emptier.
+    /// Whether a disc of this radius (mm) rolling inside the polygon, its centre within `centre`, leaves no more than
+    /// `smallest` (mm²) empty in any one place. The unavoidable rest in corners between long edges does not count if it
+    /// is at most `smallest` each. "No" may be wrong where many other corners add up.
     pub fn is_roomy_for_disc(&self, radius: f64, centre: &Region, smallest: f64) -> bool {
         let corners: f64 = self.rings().map(|ring| emptied_corners(ring, radius, smallest)).sum();
         self.reached_by_disc(radius, centre).is_some_and(|reached| self.area() - reached - corners <= smallest)
     }
 }
 
-/// Area (mm²) that a disc leaves empty in the convex corners of a ring; only corners whose edges it touches for less than
-/// half their length, and that are left less empty than `smallest` (mm²).
+/// Area (mm²) that a disc leaves empty in the convex corners of a ring; counts only corners whose edges it touches
+/// within half their length, and where no more than `smallest` (mm²) is left empty.
 fn emptied_corners(ring: &Ring, radius: f64, smallest: f64) -> f64 {
     let points = ring.points();
     let n = points.len();
     let corner = |i: usize| {
         let (into, out) = (points[i] - points[(i + n - 1) % n], points[(i + 1) % n] - points[i]);
         let lengths = (into.length_squared(), out.length_squared());
-        // Of half the turn: the disc touches each edge this many radii from the corner.
+        // Tangent of half the turn: the disc touches each edge this many radii from the corner.
         let tangent = into.perp_dot(out) / ((lengths.0 * lengths.1).sqrt() + into.dot(out));
         if tangent <= 0.0 || 4.0 * (radius * tangent).powi(2) > lengths.0.min(lengths.1) {
             return 0.0;

@@ -36,7 +36,7 @@ pub fn point_at(points: &[DVec2], distance: f64) -> Option<DVec2> {
     points.last().copied()
 }
 
-/// The open line through `points` without its last `by` (mm).
+/// The open line through `points` shortened at its end by `by` (mm).
 pub fn without_end(mut points: Vec<DVec2>, by: f64) -> Vec<DVec2> {
     let mut left = by;
     while let [.., a, b] = points[..] {
@@ -79,9 +79,9 @@ pub fn simplify(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     kept
 }
 
-/// Whether a point between two others is always kept: it lies more than three times the tolerance from the line
-/// between them, so no straight line passes within the tolerance of all three. Only the short stretches between such corners
-/// are left to be simplified.
+/// Whether a point between two others is always kept: it lies more than three times the tolerance from the line between
+/// them, so no straight line passes within the tolerance of all three. Only the short sections between such corners
+/// remain to be simplified.
 fn is_corner(before: DVec2, point: DVec2, after: DVec2, tolerance: f64) -> bool {
     let turns_back = (point - before).dot(after - point) <= 0.0;
     !turns_back && distance_squared_to_segment(point, before, after) > 9.0 * tolerance * tolerance
@@ -113,8 +113,8 @@ fn lexicographic(a: DVec2, b: DVec2) -> std::cmp::Ordering {
     a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
 }
 
-/// Marks what must stay within stretches from one point to another; with a stack of its own, so that long lines cannot overflow
-/// the real one.
+/// Marks the points to keep within each open section; uses an explicit stack, so that long lines cannot overflow the
+/// call stack.
 fn mark_kept(points: &[DVec2], open: &mut Vec<(usize, usize)>, tolerance_squared: f64, keep: &mut [bool]) {
     while let Some((a, b)) = open.pop() {
         let mut worst = (tolerance_squared, None);

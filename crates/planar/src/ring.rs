@@ -162,7 +162,7 @@ impl Ring {
         self
     }
 
-    /// Whether `p` lies inside, by winding parity; undecided on the boundary itself.
+    /// Whether `p` lies inside (even-odd rule); either answer is possible on the boundary itself.
     pub fn contains(&self, p: DVec2) -> bool {
         self.edges().fold(false, |inside, (a, b)| {
             let crosses = (a.y > p.y) != (b.y > p.y) && p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x;
@@ -259,7 +259,7 @@ impl Region {
         self.0.iter().any(|polygon| polygon.contains(p))
     }
 
-    /// The region turned about the origin; `direction` is the unit vector that x is turned to.
+    /// The region turned about the origin; `direction` is the unit vector onto which the x axis is turned.
     pub fn turned(&self, direction: DVec2) -> Self {
         let ring = |ring: &Ring| Ring::new(ring.points().iter().map(|p| direction.rotate(*p)).collect());
         let polygon = |polygon: &Polygon| Polygon {

@@ -1,8 +1,8 @@
-//! Where a region crosses horizontal rows: used to find which of many points on a grid lie inside.
+//! Where a region crosses horizontal rows: tells which of many points on a grid lie inside.
 
 use crate::{Region, Ring};
 
-/// The items of many rows, in one piece of memory.
+/// The items of many rows, in one allocation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PerRow<T> {
     items: Vec<T>,
@@ -19,7 +19,7 @@ impl<T> PerRow<T> {
         let mut starts = vec![0; count + 1];
         things.clone().for_each(|(row, _)| starts[row + 1] += 1);
         (0..count).for_each(|row| starts[row + 1] += starts[row]);
-        // Counted row by row, each has its place.
+        // Counting sort: with the rows counted, each item's position is known.
         let (mut items, mut next) = (vec![T::default(); starts[count]], starts.clone());
         for (row, thing) in things {
             items[next[row]] = thing;
@@ -38,7 +38,7 @@ impl<T> PerRow<T> {
         self.items
     }
 
-    /// The items of each row.
+    /// The items of each row, mutable.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut [T]> {
         let mut rest = self.items.as_mut_slice();
         self.starts.windows(2).map(move |ends| {
@@ -53,7 +53,7 @@ impl<T> PerRow<T> {
         self.starts.get(row..row + 2).map_or(&[], |ends| &self.items[ends[0]..ends[1]])
     }
 
-    /// One row after the other.
+    /// The rows in order.
     pub fn iter(&self) -> impl Iterator<Item = &[T]> {
         self.starts.windows(2).map(|ends| &self.items[ends[0]..ends[1]])
     }
@@ -71,8 +71,8 @@ impl<T, R: IntoIterator<Item = T>> FromIterator<R> for PerRow<T> {
 }
 
 impl Region {
-    /// For each of `count` rows y = `first` + k · `step`: the sorted places in x at which it crosses the boundary.
-    /// The row is inside between the first and the second, the third and the fourth, and so on.
+    /// For each of `count` rows y = `first` + k · `step`, the sorted x (mm) at which it crosses the boundary. The row
+    /// is inside between the first and the second, the third and the fourth, and so on.
     ///
     /// ```
     /// use planar::{DVec2, Polygon, Region, Ring};
@@ -86,7 +86,7 @@ impl Region {
     }
 }
 
-/// [`Region::rows`] of loose rings.
+/// [`Region::rows`] for loose rings.
 pub(crate) fn crossings<'a>(
     rings: impl IntoIterator<Item = &'a Ring>,
     first: f64,
@@ -107,7 +107,7 @@ pub(crate) fn crossings<'a>(
 fn cross(ring: &Ring, first: f64, step: f64, count: usize, found: &mut Vec<(usize, f64)>) {
     for (a, b) in ring.edges() {
         let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };
-        // A cast turns what lies below the first row into 0, its number.
+        // A cast turns negative values, those below the first row, into 0.
         for row in ((low.y - first) / step) as usize..count {
             let y = first + row as f64 * step;
             if y >= high.y {

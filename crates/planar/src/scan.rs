@@ -1,9 +1,9 @@
 //! Parallel scan lines through a region, and how their ends are connected along its boundary.
 //!
-//! The region is turned so that the lines run along x. Every crossing of a line with a ring remembers its place
-//! on the ring; two crossings that follow each other there are joined by a piece of boundary (a *chain*) that
-//! meets no scan line in between. A path that goes from line to line along chains can therefore neither leave
-//! the region nor cross another line: no geometric test is needed.
+//! The region is turned so that the lines run along x. Every crossing of a line with a ring remembers its position on
+//! the ring; two consecutive crossings there are joined by a piece of boundary (a *chain*) that meets no scan line in
+//! between. A path from line to line along chains can therefore neither leave the region nor cross another line: no
+//! geometric test is needed.
 
 use crate::{PerRow, Region, Ring};
 use glam::DVec2;
@@ -11,7 +11,7 @@ use glam::DVec2;
 /// Lines are moved off exact vertices by this, mm.
 const NUDGE_MM: f64 = 5e-4;
 
-/// A stretch of one scan line inside the region.
+/// A section of one scan line inside the region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
     /// Index of the scan line.
@@ -50,12 +50,12 @@ pub struct Chain {
     pub via: Vec<DVec2>,
 }
 
-/// The next end of a span along the boundary.
+/// The next end of a span along the boundary, of any span.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Neighbour {
-    /// Index of its span.
+    /// Index of the span it belongs to.
     pub span: usize,
-    /// Which of the ends.
+    /// Which end of that span.
     pub end: End,
     /// Boundary vertices between the two ends, in the turned frame; often none.
     pub via: Vec<DVec2>,
@@ -94,7 +94,7 @@ pub struct Scan {
     axis: DVec2,
 }
 
-/// Distance between lines and where they lie, in the frame turned by the raster angle.
+/// Spacing and position of the lines, in the frame turned by the raster angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Spacing {
     /// Lines spread evenly from edge to edge, at most this far apart, mm.
@@ -127,7 +127,8 @@ impl Spacing {
 const LONG: f64 = 1.5;
 /// But not where that line would be closer than this to another one, in line distances.
 const NEAREST: f64 = 0.6;
-/// Lines may be this much farther apart than asked for where one more would put them much too close, in line distances.
+/// Lines may be this much farther apart than asked for if one more line would make them much too close, in line
+/// distances.
 const FARTHER: f64 = 0.25;
 
 /// Lines along all long edges that run along x, and evenly spaced between them, about `distance` apart; `None` where
@@ -135,7 +136,7 @@ const FARTHER: f64 = 0.25;
 fn fitted(rings: &[Ring], low: f64, high: f64, distance: f64) -> Option<Vec<f64>> {
     let edges = rings.iter().flat_map(Ring::edges);
     let long = edges.filter(|(a, b)| (b.y - a.y).abs() < NUDGE_MM && (b.x - a.x).abs() > LONG * distance);
-    // The inside lies to the left of an edge: a line just inside it.
+    // The inside lies to the left of an edge: put the line just inside.
     let mut ledges: Vec<f64> = long.map(|(a, b)| a.y + NUDGE_MM * (b.x - a.x).signum()).collect();
     ledges.sort_unstable_by(f64::total_cmp);
     let mut held = vec![low + NUDGE_MM];
@@ -213,7 +214,7 @@ impl Scan {
         &self.spans
     }
 
-    /// Where a span ends, in the turned frame.
+    /// The given end of a span, in the turned frame, mm.
     pub fn end(&self, span: usize, end: End) -> DVec2 {
         self.crossings[self.crossing(span, end)].at
     }
@@ -223,13 +224,14 @@ impl Scan {
         self.end(span, End::Right).x - self.end(span, End::Left).x
     }
 
-    /// The chain from one end of a span up to the same end of a span on the next line, if the boundary leads there.
+    /// The chain from one end of a span up to the same end of a span on the next line; `None` if the boundary leads
+    /// elsewhere.
     pub fn chain_up(&self, span: usize, end: End) -> Option<Chain> {
         let from = self.crossing(span, end);
         let crossing = &self.crossings[from];
         let range = self.ring_starts[crossing.ring]..self.ring_starts[crossing.ring + 1];
         let ring = self.rings[crossing.ring].points();
-        // Right ends lie on upward edges: the ring itself leads up. Left ends lie on downward edges: go against it.
+        // Right ends lie on upward edges: follow the ring. Left ends lie on downward edges: go against it.
         let to = match end {
             End::Right if from + 1 == range.end => range.start,
             End::Right => from + 1,
@@ -255,14 +257,14 @@ impl Scan {
         Some(Chain { to: to_span, via })
     }
 
-    /// Where the boundary leads from an end of a span, up or down, until it meets a scan line again; there with the boundary
+    /// Where the boundary leads from an end of a span, up or down, until it meets a scan line again; with the boundary
     /// vertices on the way, in the turned frame.
     pub fn neighbour(&self, span: usize, end: End, up: bool) -> Option<Neighbour> {
         let from = self.crossing(span, end);
         let crossing = &self.crossings[from];
         let range = self.ring_starts[crossing.ring]..self.ring_starts[crossing.ring + 1];
         let (ring, n) = (self.rings[crossing.ring].points(), self.rings[crossing.ring].points().len());
-        // Right ends lie on upward edges: the ring itself leads up.
+        // Right ends lie on upward edges: the ring leads up from there.
         let along = (end == End::Right) == up;
         let to = match along {
             true if from + 1 == range.end => range.start,
@@ -283,12 +285,12 @@ impl Scan {
         Some(Neighbour { span, end, via })
     }
 
-    /// The edges of the region in the turned frame.
+    /// The edges of the region in the turned frame, mm.
     pub fn edges(&self) -> impl Iterator<Item = (DVec2, DVec2)> + Clone + '_ {
         self.rings.iter().flat_map(Ring::edges)
     }
 
-    /// From the turned frame back to the region's own.
+    /// From the turned frame back to that of the region.
     pub fn turn_back(&self, p: DVec2) -> DVec2 {
         self.axis * p.x + self.axis.perp() * p.y
     }
@@ -301,7 +303,8 @@ impl Scan {
     }
 }
 
-/// The number of spans that [`Scan::new`] would find and their length, mm; in less time, since no line has its ends sorted.
+/// The number of spans that [`Scan::new`] would find, and their total length, mm; faster, since crossings are not
+/// sorted.
 ///
 /// ```
 /// use planar::scan::{Spacing, count_and_length};
@@ -325,7 +328,7 @@ pub fn count_and_length(region: &Region, angle: f64, spacing: Spacing) -> (usize
     (ends / 2, length)
 }
 
-/// The direction of scan lines, the rings of a region turned so that they run along x, and where they lie.
+/// Unit vector along the scan lines, the rings of a region turned so that the lines run along x, and the lines' y.
 fn turned(region: &Region, angle: f64, lines: impl Fn(&[Ring], f64, f64) -> Vec<f64>) -> (DVec2, Vec<Ring>, Vec<f64>) {
     let axis = snapped_axis(angle);
     // Turning back by the conjugate: x' = p·axis, y' = axis × p.
@@ -357,8 +360,8 @@ fn crossings_along(ring: &Ring, lines: &[f64], mut visit: impl FnMut(Crossing)) 
     }
 }
 
-/// Number of lines at or below `y`, searched from a `guess` on: a vertex on a line counts as above it, for both of its
-/// edges alike.
+/// Number of lines at or below `y`, searched from `guess`: a vertex on a line counts as above it, for both of its
+/// edges.
 fn lines_up_to(lines: &[f64], guess: usize, y: f64) -> usize {
     let (below, above) = lines.split_at(guess);
     let less = below.iter().rev().take_while(|&&line| line > y).count();

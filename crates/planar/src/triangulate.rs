@@ -31,9 +31,9 @@ pub fn triangulate(polygon: &Polygon) -> Vec<[usize; 3]> {
     triangles.iter().map(|t| ccw(t).map(|k| t[k])).collect()
 }
 
-/// As [`triangulate`], but every edge of the polygon is an edge of one triangle, and every other edge one of two, also where points
-/// lie in line to the last digit, which ear clipping passes over: the constrained Delaunay triangulation. Where edges of the
-/// polygon cross each other, the triangles overlap, some of them are clockwise, and their areas still add up.
+/// Like [`triangulate`], but every edge of the polygon is an edge of exactly one triangle, and every other edge of two,
+/// even where points are exactly collinear, which ear clipping skips: the constrained Delaunay triangulation. Where
+/// edges of the polygon cross, the triangles overlap and some are clockwise, but their signed areas still add up.
 pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
     let (mut corners, mut edges) = (Vec::new(), Vec::new());
     for ring in polygon.rings() {
@@ -41,7 +41,7 @@ pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
         edges.extend((0..count).map(|k| [first + k, first + (k + 1) % count]));
         corners.extend((first..).zip(ring.points()).map(|(number, p)| Corner { at: Point2::new(p.x, p.y), number }));
     }
-    // An edge that is run there and back bounds nothing.
+    // An edge that runs there and back bounds nothing.
     let mut times: HashMap<[usize; 2], u32> = HashMap::new();
     let place = |k: usize| (corners[k].at.x.to_bits(), corners[k].at.y.to_bits());
     let mut first_at = HashMap::new();
@@ -52,7 +52,7 @@ pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
     let mut crossed = false;
     let all = ConstrainedDelaunayTriangulation::<Corner>::try_bulk_load_cdt(corners, edges, |_| crossed = true);
     let Some(all) = all.ok().filter(|_| !crossed) else { return fans(polygon) };
-    // From the hull inwards, every edge of the polygon leads from outside to inside or back.
+    // From the hull inwards, each edge of the polygon that is crossed leads from outside to inside or back.
     let (mut known, mut inside) = (vec![false; all.num_all_faces()], Vec::new());
     let mut open: Vec<_> = all.convex_hull().map(|edge| (edge.rev(), false)).collect();
     while let Some((edge, was_inside)) = open.pop() {

@@ -1,9 +1,9 @@
 //! The number of ends of scan lines as a function of their angle.
 //!
-//! Every crossing of a scan line with a ring is an end at which a path turns. Their number U(α) (Han et al. 2018,
-//! eqs 6–8) changes only where a line passes a vertex that is a local extreme across the lines, or where another line
-//! finds room. These angles have closed forms, so the number is known exactly for all angles: no sweep in small steps
-//! that could miss the best one. A ring has few extremes at any angle, so there are few such angles.
+//! Every crossing of a scan line with a ring is an end at which a path turns. Their number U(α) (Han et al. 2018, eqs
+//! 6–8) changes only where a line passes a vertex that is a local extreme across the lines, or where there is room for
+//! one more line. These angles have closed forms, so the number is known exactly for all angles: there is no sweep in
+//! small steps that could miss the best one. At any angle a ring has few extremes, so there are few such angles.
 
 use crate::Region;
 use crate::scan::{Spacing, count_and_length};
@@ -19,7 +19,7 @@ pub struct Turns {
     edges: Vec<(f64, f64)>,
 }
 
-/// No more edge directions than this are kept.
+/// At most this many edge directions are kept.
 const MOST_EDGES: usize = 24;
 
 /// Directions closer than this count as one, radians.
@@ -60,7 +60,7 @@ impl Turns {
         after.checked_sub(1).map_or(0, |i| self.steps[i].1)
     }
 
-    /// The angle from which each number holds, and the number; ascending.
+    /// The angle (radians) from which each number holds, and the number; ascending.
     pub fn steps(&self) -> &[(f64, i64)] {
         &self.steps
     }
@@ -70,7 +70,7 @@ impl Turns {
         &self.edges
     }
 
-    /// The same for lines turned by `angle` (radians): what was at `angle` is then at 0.
+    /// The same function for lines turned by `angle` (radians): what was at `angle` is then at 0.
     pub fn turned(&self, angle: f64) -> Self {
         let turn = |a: f64| (a - angle).rem_euclid(PI);
         let mut steps: Vec<(f64, i64)> = self.steps.iter().map(|s| (turn(s.0), s.1)).collect();
@@ -93,7 +93,8 @@ impl Turns {
         Self { steps, edges: merged(self.edges.iter().chain(&other.edges).copied().collect()) }
     }
 
-    /// The middle of the widest stretch of angles with the least number, and that number.
+    /// The middle of the widest range of angles with the least number of ends, radians, and that number; `None` without
+    /// any lines.
     ///
     /// ```
     /// use planar::scan::Spacing;
@@ -116,13 +117,13 @@ impl Turns {
     }
 }
 
-/// An angle within the widest stretch without events, and how many events come before it.
+/// An angle within the widest interval without events, and how many events come before it.
 fn widest_gap(piece: &Piece, events: &[(f64, i64)]) -> (f64, usize) {
     let starts = [piece.from].into_iter().chain(events.iter().map(|e| e.0));
     let ends = events.iter().map(|e| e.0).chain([piece.to]);
     let gaps = starts.zip(ends).enumerate();
     let widest = gaps.max_by(|(_, a), (_, b)| (a.1 - a.0).total_cmp(&(b.1 - b.0)));
-    // Not its middle: where a part is symmetric, two vertices may lie on one line there.
+    // Not its middle: if the part is symmetric, two vertices may lie on one line there.
     widest.map_or((piece.from, 0), |(known, (from, to))| (from + 0.382 * (to - from), known))
 }
 
@@ -131,13 +132,13 @@ pub fn ends_at(region: &Region, angle: f64, spacing: Spacing) -> i64 {
     2 * count_and_length(region, angle, spacing).0 as i64
 }
 
-/// A vertex that is an extreme across the lines for the angles from `from` to `from + turn`.
+/// A vertex that is an extreme across the lines for angles from `from` to `from + turn`, radians.
 struct Corner {
     at: DVec2,
     next: DVec2,
     from: f64,
     turn: f64,
-    /// Whether it is the lowest there, before angles are taken modulo π.
+    /// Whether it is the lowest point there, before angles are taken modulo π.
     lowest: bool,
 }
 
@@ -153,7 +154,7 @@ impl Corner {
         })
     }
 
-    /// Stretches within `from..to` where the vertex is an extreme, and whether it is the lowest.
+    /// The intervals within `from..to` in which the vertex is an extreme, and whether it is then the lowest.
     fn extremes(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64, bool)> + '_ {
         let first = self.from.rem_euclid(PI);
         let odd = ((self.from - first) / PI).round().rem_euclid(2.0) == 1.0;
@@ -163,13 +164,13 @@ impl Corner {
         })
     }
 
-    /// Adds the angles at which lines pass the vertex while it is an extreme, and how the number of ends changes.
+    /// Adds the angles at which lines pass the vertex while it is an extreme, and the change in the number of ends.
     fn events(&self, stretch: &Stretch, piece: &Piece, spacing: Spacing, events: &mut Vec<(f64, i64)>) {
         let (own, across) = (self.at - stretch.low, stretch.high - stretch.low);
         for (from, to, lowest) in self.extremes(stretch.from, stretch.to) {
             let up = if lowest { -2 } else { 2 };
             match spacing {
-                // Lines divide the extent: a vertex's place among them is a monotone function of the angle.
+                // Lines divide the extent: the position of a vertex among them is a monotone function of the angle.
                 Spacing::AtMost(_) => {
                     let gaps = piece.gaps as f64;
                     let place = |angle: f64| {
@@ -206,7 +207,7 @@ impl Corner {
     }
 }
 
-/// The angle, plus or minus half turns, that lies nearest to another.
+/// The angle, plus or minus half turns, that is nearest to another.
 fn near(angle: f64, other: f64) -> f64 {
     angle + ((other - angle) / PI).round() * PI
 }
@@ -220,7 +221,7 @@ fn edge_directions(corners: &[Corner]) -> Vec<(f64, f64)> {
     merged(corners.iter().map(direction).collect())
 }
 
-/// Equal directions as one, the longest first.
+/// Equal directions merged, the longest first.
 fn merged(mut edges: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     edges.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut kept: Vec<(f64, f64)> = Vec::new();

@@ -1,8 +1,8 @@
-//! Rings that cross resolved by their winding number, without a sweep over everything.
+//! Resolves crossing rings by their winding number, without a sweep over the whole plane.
 //!
-//! At every crossing the two rings exchange how they go on: in from one, out on the other. That leaves closed curves that
-//! cross nowhere, and along each side of them the winding number is constant. Those with the wanted number on their
-//! left and one less on their right bound the result. What touches without crossing is left to the boolean.
+//! At every crossing the two rings swap their continuations: in on one, out on the other. What remains are closed
+//! curves that nowhere cross, along each side of which the winding number is constant. Those with the wanted number on
+//! their left and one less on their right bound the result. Rings that touch without crossing are left to the boolean.
 
 use crate::boxes::{Boxes, Piece};
 use crate::grid::{GridPoint, from_grid, to_grid};
@@ -11,7 +11,7 @@ use glam::DVec2;
 use std::ops::RangeBounds;
 
 /// The region around which closed rings wind at least `level` times, rounded to the grid. `None` where rings touch or
-/// overlap, and where they wind around anything a number of times that is not `allowed`.
+/// overlap, or where a winding number is not `allowed`.
 pub(crate) fn region_within(rings: Vec<Vec<DVec2>>, level: i32, allowed: impl RangeBounds<i32>) -> Option<Region> {
     let edges = Edges::of(&rings)?;
     let boxes = Boxes::new(edges.ends.clone());
@@ -33,14 +33,14 @@ pub(crate) fn region_within(rings: Vec<Vec<DVec2>>, level: i32, allowed: impl Ra
     (!turns_off || cross_nowhere(&kept)).then(|| nested(kept))
 }
 
-/// Whether no two edges of some rings cross or touch, except neighbours at their common end; exact on the grid.
+/// Whether no two edges cross or touch, except neighbours at their common end; exact on the grid.
 fn cross_nowhere(rings: &[Vec<GridPoint>]) -> bool {
     let rings: Vec<Vec<DVec2>> = rings.iter().map(|ring| ring.iter().map(|&p| from_grid(p)).collect()).collect();
     let crossings = Edges::of(&rings).and_then(|edges| edges.crossings(&Boxes::new(edges.ends.clone())));
     crossings.is_some_and(|crossings| crossings.is_empty())
 }
 
-/// Rings that cross nowhere, as curves.
+/// Rings that nowhere cross, as curves.
 fn as_they_are(rings: Vec<Vec<DVec2>>) -> Vec<Curve> {
     let mut first = 0;
     let curve = |points: Vec<DVec2>| {
@@ -54,7 +54,7 @@ fn as_they_are(rings: Vec<Vec<DVec2>>) -> Vec<Curve> {
 /// All edges of some rings.
 struct Edges {
     ends: Vec<Piece>,
-    /// The edge that follows each in its ring.
+    /// For each edge, the one that follows it in its ring.
     next: Vec<usize>,
 }
 
@@ -70,7 +70,7 @@ struct Curve {
     points: Vec<DVec2>,
     /// The edge on which it continues from each point.
     edges: Vec<usize>,
-    /// Whether it turns off at crossings.
+    /// Whether it changes from one ring to another at some crossing.
     turns_off: bool,
 }
 
@@ -132,14 +132,14 @@ impl Edges {
         Meeting::Crossing(Crossing { edges: [i, j], along, place: a.lerp(b, along[0]) })
     }
 
-    /// The curves that result when rings exchange how they go on at every crossing. `None` where crossings are so close
-    /// together that their order along an edge is unsure.
+    /// The curves that result when rings swap their continuations at every crossing. `None` where crossings are so
+    /// close together that their order along an edge is uncertain.
     fn exchanged(&self, crossings: &[Crossing]) -> Option<Vec<Curve>> {
         let mut cuts: Vec<(usize, f64, usize)> = (0..crossings.len())
             .flat_map(|k| [0, 1].map(|side| (crossings[k].edges[side], crossings[k].along[side], k)))
             .collect();
         cuts.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
-        // Stations: where an edge begins, and its crossings in order.
+        // Stations: the start of each edge, followed by its crossings in order.
         let count = self.ends.len() + cuts.len();
         let (mut points, mut edges) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut begins = Vec::with_capacity(self.ends.len());
@@ -197,11 +197,11 @@ impl Edges {
     }
 }
 
-/// Places on an edge count as different from this distance on, mm: rounding moves the place of a crossing by some 1e-11 mm where
+/// Points on an edge count as different from this distance on, mm: rounding moves a crossing by some 1e-11 mm where
 /// coordinates are largest. In the wrong order, crossings would join curves that have nothing to do with each other.
 const APART: f64 = 1e-9;
 
-/// Whether it is unsure that a place comes after the one before it.
+/// Whether it is uncertain that a point comes after the one before it.
 fn is_unsure(before: Option<&DVec2>, place: DVec2) -> bool {
     before.is_some_and(|before| before.distance_squared(place) < APART * APART)
 }
@@ -224,7 +224,7 @@ impl Curve {
     }
 }
 
-/// The points of a closed curve on the grid, without those that coincide or between two edges in the same direction.
+/// The points of a closed curve on the grid, without coincident ones and those between two edges in the same direction.
 fn on_grid(curve: &[DVec2]) -> Vec<GridPoint> {
     let mut points: Vec<GridPoint> = curve.iter().map(|&p| to_grid(p)).collect();
     points.dedup();
@@ -243,8 +243,9 @@ fn on_grid(curve: &[DVec2]) -> Vec<GridPoint> {
     bent
 }
 
-/// Curves that cross nowhere, with the region on their left, as polygons: each hole in the smallest ring around it. As the
-/// boolean does, polygons and holes come by their leftmost points; a hole begins there, and an outer ring at the point before.
+/// Curves that nowhere cross, with the region on their left, as polygons: each hole in the smallest ring around it. As
+/// in the boolean's results, polygons and holes are ordered by their leftmost points; a hole begins at that point, an
+/// outer ring at the one before.
 fn nested(mut curves: Vec<Vec<GridPoint>>) -> Region {
     let (mut outers, mut holes): (Vec<(Polygon, Bounds, f64)>, Vec<Ring>) = (Vec::new(), Vec::new());
     let leftmost = |curve: &[GridPoint]| (0..curve.len()).min_by_key(|&i| (curve[i].x, curve[i].y)).unwrap_or(0);
@@ -279,7 +280,7 @@ fn nested(mut curves: Vec<Vec<GridPoint>>) -> Region {
     Region::from_normalised(outers.into_iter().map(|(polygon, ..)| polygon).collect())
 }
 
-/// Twice the area of a triangle, its sign exact: positive where `r` lies left of the path from `p` to `q`.
+/// Twice the signed area of a triangle, its sign exact: positive where `r` lies left of the line from `p` to `q`.
 fn side(p: DVec2, q: DVec2, r: DVec2) -> f64 {
     let [p, q, r] = [p, q, r].map(|p| robust::Coord { x: p.x, y: p.y });
     robust::orient2d(p, q, r)

@@ -15,7 +15,7 @@ pub(super) struct Edge {
     pub previous: usize,
     pub next: usize,
     ring: usize,
-    /// Distance of `a` from the start of the ring along it, mm.
+    /// Distance of `a` along the ring from its start, mm.
     start: f64,
 }
 
@@ -98,7 +98,7 @@ impl Boundary {
         }
     }
 
-    /// How far apart two points of the boundary lie along it, mm; infinite on different rings.
+    /// Distance between two points of the boundary along it, mm; infinite on different rings.
     pub(super) fn along(&self, p: &Foot, q: &Foot) -> f64 {
         let (e, f) = (&self.edges[p.edge], &self.edges[q.edge]);
         if e.ring != f.ring {
@@ -108,10 +108,10 @@ impl Boundary {
         gap.min(self.ring_lengths[e.ring] - gap)
     }
 
-    /// Whether `p` lies inside, given a point of the boundary that is nearest to it.
+    /// Whether `p` lies inside, given the point of the boundary nearest to it.
     pub(super) fn inside(&self, foot: &Foot, p: DVec2) -> bool {
         let edge = &self.edges[foot.edge];
-        // Where the nearest is a vertex, it is one that juts towards p.
+        // If the nearest point is a vertex, that vertex juts out towards p.
         let juts_inwards = |at: usize| {
             let (before, after) = (&self.edges[self.edges[at].previous], &self.edges[at]);
             (before.b - before.a).perp_dot(after.b - after.a) < 0.0

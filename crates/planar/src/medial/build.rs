@@ -1,4 +1,4 @@
-//! The discs of the triangles' sides, junctions and corners, and which follow each other.
+//! The discs of chords, junctions and corners, and how they are linked.
 
 use super::boundary::Boundary;
 use super::disc::{Disc, Tent, TentDisc, at_junction, on_tent, through_samples, widest_angle};
@@ -37,8 +37,8 @@ impl<'a> Graph<'a> {
         graph
     }
 
-    /// A junction may lie outside its triangle, beyond a chord; a disc that was found on the chord itself is then on
-    /// another branch and is dropped.
+    /// A junction may lie outside its triangle, beyond a chord; the disc found on that chord is then on another branch
+    /// and is dropped.
     fn drop_overtaken(&mut self, cell: usize, junction: DVec2) {
         let mesh = self.mesh;
         for (mut chord, mut corner) in mesh.cells[cell].chords() {
@@ -74,7 +74,8 @@ fn corner_disc(mesh: &Mesh, cell: &Cell) -> Disc {
     Disc { at, radius: 0.0, angle: PI - (p - at).angle_to(q - at).abs() }
 }
 
-/// The disc at a junction: from the edges of the samples; on a jagged outline from those that the chords' discs touch.
+/// The disc at a junction: from the edges of the samples; on a jagged outline, from the edges that the chords' discs
+/// touch.
 fn junction_disc(boundary: &Boundary, mesh: &Mesh, number: usize, chords: &[TentDisc]) -> Option<Disc> {
     let (cell, guess) = (&mesh.cells[number], mesh.centres[number]?);
     let own = cell.corners.map(|c| mesh.samples[c].edge);

@@ -1,4 +1,4 @@
-//! Largest discs: the one between two samples touches both sides, the one at a junction touches three.
+//! Maximal discs: one found between two samples touches both sides, one at a junction touches three.
 
 use super::boundary::{Boundary, Foot};
 use super::mesh::Sample;
@@ -7,22 +7,23 @@ use glam::DVec2;
 /// Nodes are equidistant from what they touch to within this, mm.
 const TOLERANCE_MM: f64 = 1e-9;
 
-/// Number of nearer edges after which the search for a disc settles for what it has.
+/// After this many steps to a nearer edge, the search for a disc settles for what it has.
 const MOST_STEPS: usize = 60;
 
-/// A circle through three samples may reach beyond the boundary by this, mm, and still be taken for the disc.
+/// A circle through three samples may reach beyond the boundary by this, mm, and still be accepted as the disc.
 const NEAR_MM: f64 = 0.01;
 
-/// A largest disc and how it touches.
+/// A maximal disc and how it touches the boundary.
 #[derive(Clone, Copy)]
 pub(super) struct Disc {
     pub at: DVec2,
     pub radius: f64,
-    /// Object angle, rad: between the places it touches, seen from the middle; the largest where there are three.
+    /// Object angle, rad: between the points it touches, seen from its centre; the largest such angle if there are
+    /// three.
     pub angle: f64,
 }
 
-/// The path between two samples on which a disc is sought: over a peak near the axis, or straight where there is none.
+/// The path between two samples along which a disc is sought: via a peak near the axis, or straight if there is none.
 #[derive(Clone, Copy)]
 pub(super) struct Tent {
     pub ends: [Sample; 2],
@@ -40,22 +41,22 @@ impl Tent {
     }
 }
 
-/// The disc on a tent, and what it touches on the side of either end.
+/// The disc found on a tent, and the points it touches on the side of either end.
 #[derive(Clone, Copy)]
 pub(super) struct TentDisc {
     pub disc: Disc,
     pub feet: [Foot; 2],
 }
 
-/// A place on a tent, from 0 to 1, and the edge nearest to it.
+/// A position along a tent, 0 to 1, and the edge nearest to it.
 #[derive(Clone, Copy)]
 struct Bracket {
     t: f64,
     edge: usize,
 }
 
-/// Where on the path between two samples the nearest edge changes sides. Brackets it like a root finder, but each step
-/// goes to where the two nearest edges known so far are equally far, so that one or two steps suffice.
+/// The disc where, along the path between two samples, the nearest edge changes sides. Brackets it like a root finder,
+/// but each step goes to the point equidistant from the two nearest edges known so far, so one or two steps suffice.
 pub(super) fn on_tent(boundary: &Boundary, tent: &Tent) -> TentDisc {
     let mut low = Bracket { t: 0.0, edge: edge_at(boundary, tent.ends[0], tent.at(1e-6)) };
     let mut high = Bracket { t: 1.0, edge: edge_at(boundary, tent.ends[1], tent.at(1.0 - 1e-6)) };
@@ -83,7 +84,7 @@ pub(super) fn on_tent(boundary: &Boundary, tent: &Tent) -> TentDisc {
     }
 }
 
-/// Of the edges that meet at a sample, the one nearer to a place close by.
+/// Of the edges that meet at a sample, the one nearer to the point `close_by`.
 fn edge_at(boundary: &Boundary, sample: Sample, close_by: DVec2) -> usize {
     let edge = boundary.edges[sample.edge];
     let distance = |e: usize| boundary.foot_on(e, close_by).distance;
@@ -91,7 +92,7 @@ fn edge_at(boundary: &Boundary, sample: Sample, close_by: DVec2) -> usize {
     if is_vertex && distance(edge.previous) < distance(sample.edge) { edge.previous } else { sample.edge }
 }
 
-/// Where the edges of both brackets are equally far (Illinois method). At each bracket its own edge is nearer.
+/// Where the edges of both brackets are equidistant (Illinois method). At each bracket its own edge is nearer.
 fn balance(boundary: &Boundary, tent: &Tent, low: Bracket, high: Bracket) -> f64 {
     let lead = |t: f64| {
         let at = tent.at(t);
@@ -115,7 +116,8 @@ fn balance(boundary: &Boundary, tent: &Tent, low: Bracket, high: Bracket) -> f64
     b.0
 }
 
-/// The disc that touches three edges and comes nearer to no other, from a first guess; `None` when there is none near.
+/// The disc that touches three edges and comes nearer to no other, from a first guess; `None` when there is none
+/// nearby.
 pub(super) fn at_junction(boundary: &Boundary, guess: DVec2, edges: [usize; 3]) -> Option<Disc> {
     let (mut at, mut edges) = (guess, edges);
     for _ in 0..12 {

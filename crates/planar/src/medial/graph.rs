@@ -1,4 +1,4 @@
-//! The discs joined into curves: noise peeled off, branches traced.
+//! The discs linked into curves: noise is peeled off and branches are traced.
 
 use super::boundary::Boundary;
 use super::disc::{Disc, Tent, on_tent};
@@ -15,21 +15,21 @@ const SAME_MM: f64 = 1e-6;
 /// A gap between two nodes is filled with at most this many pieces.
 const MOST_PIECES: f64 = 50.0;
 
-/// A node below the least object angle where the curve turns by more than this, rad, is not on it but on noise beside
-/// it.
+/// If the curve turns by more than this, rad, at a node below the least object angle, that node is noise beside the
+/// curve.
 const SPUR_TURN: f64 = PI / 6.0;
 
 /// The neighbours of a disc: three at most, except where junctions coincide.
 pub(super) type Links = SmallVec<[usize; 3]>;
 
-/// Discs and which of them follow each other. The discs of chords come first, under the numbers of their chords.
+/// Discs and their links. The discs of chords come first, indexed as their chords.
 pub(super) struct Graph<'a> {
     pub boundary: &'a Boundary,
     pub mesh: &'a Mesh,
     pub discs: Vec<Disc>,
     /// How the disc of each chord was found.
     pub tents: Vec<Tent>,
-    /// Neighbours; none where a disc has been taken out.
+    /// Neighbours; none where a disc has been removed.
     pub links: Vec<Links>,
     pub out: Vec<bool>,
 }
@@ -90,7 +90,7 @@ impl Graph<'_> {
         }
     }
 
-    /// A disc between those of two chords that share one end, at `t` from the first to the second.
+    /// A disc between those of two chords that share one end, at fraction `t` from the first to the second.
     fn between(&self, chords: [usize; 2], t: f64) -> Option<Disc> {
         let mesh = self.mesh;
         if chords.iter().any(|&c| c >= mesh.chords.len()) {
@@ -166,7 +166,7 @@ impl Graph<'_> {
         path
     }
 
-    /// The discs as nodes, with more in wide gaps, without those that repeat a place or lie on noise beside the curve.
+    /// The discs as nodes: wide gaps filled in, repeated points and noise beside the curve left out.
     fn nodes_along(&self, path: &[usize], options: &MedialOptions) -> Vec<Node> {
         let mut kept: Vec<Disc> = Vec::with_capacity(path.len());
         let noise = |a: &Disc, b: &Disc, c: &Disc| {
@@ -181,7 +181,7 @@ impl Graph<'_> {
             }
             kept.push(disc);
         }
-        // The ends are junctions and stay: a second node that repeats the first goes.
+        // The ends are junctions and stay: drop a second node that repeats the first.
         if kept.len() > 2 && kept[1].at.distance(kept[0].at) < SAME_MM {
             kept.remove(1);
         }

@@ -23,7 +23,7 @@ impl MedialAxis {
         self.chained(kept)
     }
 
-    /// Branches that are the only two at a junction become one.
+    /// Joins the two branches wherever only two meet at a junction.
     pub(super) fn joined(self) -> Self {
         self.chained(|_| true)
     }
@@ -60,7 +60,7 @@ impl MedialAxis {
         axis
     }
 
-    /// The index in this axis of a junction of the old axis.
+    /// The index in this axis of a junction of the old axis, added if it is new.
     fn junction(&mut self, number: &mut [Option<usize>], old: usize, node: Node) -> usize {
         *number[old].get_or_insert_with(|| {
             self.junctions.push(node);
@@ -80,7 +80,7 @@ impl Branch {
     }
 }
 
-/// Union–find with halving paths.
+/// Union–find with path halving.
 fn leading(leader: &mut [usize], mut junction: usize) -> usize {
     while leader[junction] != junction {
         leader[junction] = leader[leader[junction]];

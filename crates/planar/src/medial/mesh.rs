@@ -13,10 +13,10 @@ const MOST_SAMPLES: f64 = 1e6;
 /// Vertices that turn by less than this, rad, never get samples of their own.
 const LEAST_TURN: f64 = 2.0 * std::f64::consts::PI / 180.0;
 
-/// Vertices that turn by more than this, rad, always get them: every triangle has a corner that does.
+/// Vertices that turn by more than this, rad, always get samples: every triangle has a corner that does.
 const MOST_TURN: f64 = 90.0 * std::f64::consts::PI / 180.0;
 
-/// The circle about a peak, through the samples below it, must be free of boundary up to this fraction of its radius.
+/// The circle about a peak through the samples below it must be free of boundary up to this fraction of its radius.
 const FREE_REACH: f64 = 0.8;
 
 /// A point on the boundary.
@@ -58,7 +58,7 @@ pub(super) struct Mesh {
 type Cdt = ConstrainedDelaunayTriangulation<Sample>;
 
 impl Mesh {
-    /// `None` when sides of the boundary cross each other by rounding.
+    /// `None` when rounding makes boundary edges cross each other.
     pub(super) fn of(boundary: &Boundary, options: &MedialOptions) -> Option<Self> {
         let (samples, sides) = sample(boundary, options);
         let mut crossed = false;
@@ -98,8 +98,8 @@ impl Mesh {
         self.chords.len() - 1
     }
 
-    /// The path over the middle of the Voronoi edge that belongs to a chord. It has no peak where that middle lies
-    /// outside or the samples are too far apart for the thickness.
+    /// The path over the midpoint of the Voronoi edge of a chord. It has no peak if that midpoint lies outside or the
+    /// samples are too far apart for the thickness.
     pub(super) fn tent(&self, boundary: &Boundary, chord: usize) -> Tent {
         let ends = self.chords[chord].map(|s| self.samples[s]);
         let [p, q] = self.sides[chord].map(|cell| self.centres[cell]);
@@ -129,7 +129,7 @@ fn circumcentre([a, b, c]: [DVec2; 3]) -> Option<DVec2> {
     centre.is_finite().then_some(centre)
 }
 
-/// Whether each face lies inside, by its index: an odd number of boundaries lies between it and the outside.
+/// For each face by index, whether it lies inside: an odd number of boundaries separates it from the outside.
 fn faces_inside(cdt: &Cdt) -> Vec<bool> {
     let mut inside: Vec<Option<bool>> = vec![None; cdt.num_all_faces()];
     let outer = cdt.outer_face();
@@ -164,7 +164,7 @@ fn sample(boundary: &Boundary, options: &MedialOptions) -> (Vec<Sample>, Vec<[us
     let mut samples: Vec<Sample> = Vec::new();
     let mut known = FxHashMap::default();
     let mut index = |at: DVec2, edge: usize| {
-        // Rings may share a vertex. Adding zero turns −0 into 0.
+        // Rings may share a vertex. Adding zero turns −0 into 0, so that equal points have equal bits.
         let bits = [(at.x + 0.0).to_bits(), (at.y + 0.0).to_bits()];
         *known.entry(bits).or_insert_with(|| {
             samples.push(Sample { at, edge });
@@ -200,8 +200,8 @@ fn guard(boundary: &Boundary, edge: usize, min_angle: f64) -> Option<f64> {
     (guard > 0.0).then_some(guard)
 }
 
-/// Places of the samples between the ends of an edge, as fractions of its length: from a guarded end in doubling steps,
-/// and then evenly.
+/// Positions of the samples between the ends of an edge, as fractions of its length: from a guarded end in doubling
+/// steps, then evenly.
 fn stations(length: f64, guards: [Option<f64>; 2], spacing: f64) -> Vec<f64> {
     let half = length / 2.0;
     if guards == [None, None] && length <= spacing {
@@ -213,11 +213,11 @@ fn stations(length: f64, guards: [Option<f64>; 2], spacing: f64) -> Vec<f64> {
     places.iter().map(|x| x / length).filter(|&t| t > 0.0 && t < 1.0).collect()
 }
 
-/// Places from an end up to the middle of the edge, which is left out, mm.
+/// Positions from an end up to, but not including, the middle of the edge, mm.
 fn half_stations(half: f64, guard: Option<f64>, spacing: f64) -> Vec<f64> {
     let mut places = Vec::new();
     if let Some(guard) = guard {
-        // The first one always, and equally far along both edges of the vertex.
+        // The first sample always, equally far along both edges of the vertex.
         let mut x = guard.min(spacing);
         places.push(x);
         while 2.0 * x < spacing.min(half / 2.0) {

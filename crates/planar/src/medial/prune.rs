@@ -2,7 +2,7 @@
 
 use super::{MedialAxis, Node, length};
 
-/// The slope is taken over at least this fraction of the radius, so that nodes that nearly coincide have no say.
+/// The slope is taken over at least this fraction of the radius, so that nearly coincident nodes do not count.
 const WINDOW: f64 = 1e-3;
 
 impl MedialAxis {
@@ -21,9 +21,9 @@ impl MedialAxis {
         self
     }
 
-    /// Without spurs: branches from a free end to a junction, such as those into the teeth of a gear, that `is_spur` recognises
-    /// by their nodes from the free end on. The shortest goes first, and branches that are then the only two at a junction become
-    /// one before the next is examined; so the longest path through a tree of spurs remains.
+    /// Without spurs: branches from a free end to a junction, such as those into the teeth of a gear, for which
+    /// `is_spur` holds, given their nodes from the free end on. The shortest is removed first, and two branches left
+    /// alone at a junction are joined before the next is examined; so the longest path through a tree of spurs remains.
     #[must_use]
     pub fn without_spurs(mut self, is_spur: impl Fn(&[Node]) -> bool) -> Self {
         loop {
@@ -47,7 +47,7 @@ impl MedialAxis {
             if spurs.is_empty() {
                 return self;
             }
-            // At each junction one spur is removed before the others are examined again.
+            // At each junction only one spur is removed per round.
             let (mut touched, mut ends) = (vec![false; degrees.len()], vec![false; degrees.len()]);
             let mut gone = vec![false; self.branches.len()];
             for (_, number, [end, junction]) in spurs {
@@ -62,7 +62,7 @@ impl MedialAxis {
         }
     }
 
-    /// Without the free branches along which the radius grows, from end to end, as fast as at an object angle below
+    /// Removes the free branches along which the radius grows, from end to end, as fast as at an object angle below
     /// `min_angle`: noise with a sharp tip.
     pub(super) fn without_noise(mut self, min_angle: f64) -> Self {
         let slope = (min_angle / 2.0).cos();
@@ -76,8 +76,8 @@ impl MedialAxis {
         self
     }
 
-    /// One round: cuts every free end back by as many steps as `steps` returns for the nodes from there on. Returns
-    /// whether any were cut.
+    /// One round: cuts every free end back by as many steps as `steps` returns for the nodes from that end on. Returns
+    /// whether anything was cut.
     fn cut_back(&mut self, steps: impl Fn(&[Node]) -> usize) -> bool {
         let degrees = self.degrees();
         let mut gone = vec![false; self.junctions.len()];
@@ -113,7 +113,7 @@ impl MedialAxis {
     }
 }
 
-/// For how many steps from the first node on the radius grows by at least `slope` per mm.
+/// The number of steps from the first node over which the radius grows by at least `slope` per mm.
 fn rising_steps(nodes: &[Node], slope: f64) -> usize {
     let rises = |from: &usize| {
         let (first, mut last, mut along) = (nodes[*from], nodes[*from], 0.0);
