@@ -1,4 +1,5 @@
-//! Cladding: metal of an even thickness over the surface of a part that is there, and the chart in which its layers follow it.
+//! Cladding: an even thickness of metal over the surface of an existing part, and the chart in which its layers follow
+//! it.
 
 use crate::chart::warp::{self, STEEPEST, WarpError};
 use crate::chart::{Chart, Cylinder, Side, Surface, SurfaceError};
@@ -10,57 +11,58 @@ use planar::{Bounds, FillRule, Join, Polygon, Region, Ring};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// Metal to be laid, and how its layers lie.
+/// The metal to be laid, and the shape of its layers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cladding {
     /// Closed, in the coordinates of the base, mm.
     pub mesh: Mesh,
     /// Layers over the surface of the base, or around its axis.
     pub chart: Chart,
-    /// What is left out because it is too steep, hidden, or not there, mm²: seen along the direction of the surface, or around the axis.
+    /// Area left out because it is too steep, hidden or missing, mm²: seen along the surface's direction, or around the
+    /// axis.
     pub bare: f64,
 }
 
-/// Why nothing can be clad.
+/// Why something cannot be clad.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CladdingError {
-    /// The heights of the base.
+    /// The heights of the base do not define a surface.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
-    /// The caller stopped it, or the surface is too steep.
+    /// Cancelled by the caller, or the surface is too steep.
     #[error(transparent)]
     Warp(#[from] WarpError),
-    /// The area and what is seen of the base lie apart.
+    /// The area and the visible part of the base do not overlap.
     #[error(
         "nothing of the base that is less steep than 17.7° lies within the area. Outlines lie in x and y of the base as it stands on the table."
     )]
     NoArea,
-    /// Nothing of the base lies on the cylinder.
+    /// No face of the base lies on the cylinder.
     #[error("nothing of the base lies {radius} mm from the axis, facing {facing}")]
     NotRound {
-        /// mm
+        /// Radius of the cylinder, mm.
         radius: f64,
-        /// Where its faces would point.
+        /// Which way its faces would point.
         facing: &'static str,
     },
-    /// Nothing of the cylinder lies where it is to be clad.
+    /// The cylinder has no face where it is to be clad.
     #[error("the face reaches {}, and nothing of it lies between the two places asked for", words(.stretches))]
     Beside {
-        /// Where it begins and ends along the axis, mm.
+        /// Intervals of its faces along the axis, mm.
         stretches: Vec<[f64; 2]>,
     },
-    /// A bore narrower than its cladding.
+    /// A bore too narrow for its cladding.
     #[error("a bore of {radius} mm radius has no room for {thickness} mm of cladding")]
     Narrow {
-        /// mm
+        /// Radius of the bore, mm.
         radius: f64,
-        /// mm
+        /// Thickness of the cladding, mm.
         thickness: f64,
     },
     /// The cylinder is interrupted, by flanges for example.
     #[error("the face has gaps along the axis: it reaches {}. Clad them one at a time", words(.stretches))]
     Gaps {
-        /// Where it begins and ends along the axis, mm.
+        /// Intervals of its faces along the axis, mm.
         stretches: Vec<[f64; 2]>,
     },
 }
@@ -69,26 +71,28 @@ fn words(stretches: &[[f64; 2]]) -> String {
     stretches.iter().map(|[from, to]| format!("from {from:.1} to {to:.1} mm")).collect::<Vec<_>>().join(", ")
 }
 
-/// Faces that look up: the cosine of their steepest slope, 45°. Scans are rougher than what was scanned.
+/// Faces looking up: least cosine of their slope, 45°. Scans are rougher than the scanned part.
 const FACING: f64 = 0.7;
-/// Faces are seen if they lie no deeper under the surface than this part of its grid.
+/// Faces are visible if they lie no deeper below the surface than this many grid steps.
 const SEEN: f64 = 1.0;
-/// Faces are looked at in pieces of this many steps of the grid.
+/// Faces are examined in pieces of this many grid steps.
 const PIECE: f64 = 2.0;
-/// Around an area heights are measured for this many steps of the grid.
+/// Heights are measured up to this many grid steps outside an area.
 const BESIDE: f64 = 1.5;
 /// Chord tolerance of the mesh, mm.
 const TOLERANCE: f64 = 0.02;
-/// Faces lie on a cylinder if their corners are this near to it, in parts of its radius and mm.
+/// Faces lie on a cylinder if their corners are this near to it, as a fraction of its radius and in mm; the smaller
+/// counts.
 const ROUND: f64 = 0.01;
 const AWAY: f64 = 0.5;
-/// This part of a cylinder may be missing before it counts: chords are shorter than their arcs.
+/// Less missing than this fraction of a cylinder does not count: chords are shorter than their arcs.
 const WHOLE: f64 = 0.01;
-/// Pieces of a circle.
+/// Segments of a full circle.
 const SEGMENTS: u32 = 360;
 
-/// Cladding over what is seen of a base along `up`, of the given thickness along `up`, mm: over all of it that is not too steep, or
-/// over that part of it that lies within `area`, mm, seen along `up`. The surface is measured on a grid of `step`, mm.
+/// Cladding over the part of a base that is visible along `up`, with the given thickness (mm) along `up`: over
+/// everything not too steep, or only within `area` (mm, seen along `up`). The surface is measured on a grid of `step`
+/// (mm).
 ///
 /// # Errors
 /// [`CladdingError`].
@@ -105,7 +109,7 @@ pub fn over(
     let facing = faces(base, |corners| normal(corners).dot(up) >= FACING);
     let facing = warp::divided(&facing, PIECE * step, task)?;
     let level = level(&facing, up, step, kept)?;
-    // What falls away beside those faces does not pull their edges down.
+    // So that what falls away beside those faces does not pull their edges down.
     let surface = Arc::new(Surface::of_faces(&level, up, step, kept)?.rounded());
     let chart = Chart::Surface(Arc::clone(&surface));
     let seen = shadow(&level, &chart);
@@ -124,7 +128,7 @@ pub fn over(
     Ok(Cladding { mesh, chart, bare: (all - covered).max(0.0) })
 }
 
-/// Those of the faces that look up which are seen and not too steep, on a grid of `step`, mm, where it is kept.
+/// The faces, of those looking up, that are visible and not too steep, on a grid of `step` (mm), restricted to `kept`.
 fn level(facing: &Mesh, up: DVec3, step: f64, kept: impl Fn(DVec2) -> bool + Copy) -> Result<Mesh, CladdingError> {
     let whole = Surface::of_faces(facing, up, step, kept).map_err(|error| match error {
         SurfaceError::Nothing => CladdingError::NoArea,
@@ -139,7 +143,7 @@ fn level(facing: &Mesh, up: DVec3, step: f64, kept: impl Fn(DVec2) -> bool + Cop
     if level.triangles.is_empty() { Err(CladdingError::NoArea) } else { Ok(level) }
 }
 
-/// The solid over polygons on a surface, of a thickness, mm.
+/// The solid of a thickness (mm) over polygons on a surface.
 fn stacked(polygons: &[Polygon], surface: &Surface, thickness: f64, task: &Task) -> Result<Mesh, WarpError> {
     let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
     for polygon in polygons {
@@ -153,7 +157,7 @@ fn stacked(polygons: &[Polygon], surface: &Surface, thickness: f64, task: &Task)
     Ok(Mesh::from_triangles(vertices, triangles).0)
 }
 
-/// Places of a region on a grid, mm.
+/// Grid points within a region, mm.
 fn places(region: &Region, step: f64) -> impl Iterator<Item = DVec3> {
     let bounds = region.bounds().unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let counts = (bounds.size() / step).ceil();
@@ -166,25 +170,25 @@ fn normal([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }
 
-/// A mesh with some of the faces.
+/// A mesh with only the faces that `kept` accepts.
 fn faces(mesh: &Mesh, kept: impl Fn(&[DVec3; 3]) -> bool) -> Mesh {
     let corners = |triangle: &[u32; 3]| triangle.map(|corner| mesh.vertices[corner as usize]);
     let triangles = mesh.triangles.iter().copied().filter(|triangle| kept(&corners(triangle))).collect();
     Mesh { vertices: mesh.vertices.clone(), triangles, ..Mesh::default() }
 }
 
-/// What lies under or over faces that look up, as (u, v) of a surface.
+/// The projection of upward-looking faces onto (u, v) of a surface.
 fn shadow(mesh: &Mesh, chart: &Chart) -> Region {
     let flat: Vec<DVec2> = mesh.vertices.iter().map(|p| chart.coordinates(*p).truncate()).collect();
     let ring = |triangle: &[u32; 3]| Ring::new(triangle.map(|corner| flat[corner as usize]).to_vec());
     Region::from_rings(&mesh.triangles.iter().map(ring).collect::<Vec<_>>(), FillRule::NonZero)
 }
 
-/// Cladding around an axis, of the given thickness, mm, on the faces of a base that lie on the cylinder: as far along the axis as
-/// they reach, or only between two places along it, mm from the point `through`.
+/// Cladding of the given thickness (mm) around an axis, on the faces of a base that lie on the cylinder: over their
+/// whole length along the axis, or only between two positions along it, mm from the point `through`.
 ///
 /// # Errors
-/// [`CladdingError`], of a cylinder.
+/// [`CladdingError`], for a cylinder.
 pub fn around(
     base: &Mesh,
     cylinder: Cylinder,
@@ -208,7 +212,7 @@ pub fn around(
         _ => return Err(CladdingError::Gaps { stretches: found }),
     };
     let sign = outwards(side);
-    // Circles of chords lie inside: these are as far out at the middle of each chord.
+    // Polygons inscribed in circles: moved out so that the middle of each chord lies on the circle.
     let [near, far] = [radius, radius + sign * thickness].map(|radius| radius / (PI / f64::from(SEGMENTS)).cos());
     let section = [[near, low], [far, low], [far, high], [near, high]].map(DVec2::from_array);
     let Solid { vertices, triangles } = Solid::revolve(&section, SEGMENTS);
@@ -236,13 +240,13 @@ fn round(mesh: &Mesh, cylinder: &Cylinder) -> Vec<[DVec3; 3]> {
     triangles.filter(is_on_it).collect()
 }
 
-/// Where a face begins and ends along the axis, mm.
+/// Interval of a face along the axis, mm.
 fn along(corners: &[DVec3; 3], cylinder: &Cylinder) -> [f64; 2] {
     let [a, b, c] = corners.map(|p| cylinder.axis.dot(p - cylinder.through));
     [a.min(b).min(c), a.max(b).max(c)]
 }
 
-/// Spans put together where one goes on in the next, mm.
+/// Merges intervals that overlap or touch, mm.
 fn stretches(mut spans: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     spans.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let mut stretches: Vec<[f64; 2]> = Vec::new();
@@ -255,8 +259,8 @@ fn stretches(mut spans: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     stretches
 }
 
-/// Area of faces on a cylinder between two places along its axis, mm²: all of those in between, and of others the part that their
-/// length has in common.
+/// Area of faces on a cylinder between two positions along its axis, mm²; of faces partly in between, the fraction of
+/// their length that is.
 fn round_area(faces: &[[DVec3; 3]], cylinder: &Cylinder, [low, high]: [f64; 2]) -> f64 {
     let share = |corners: &[DVec3; 3]| {
         let [from, to] = along(corners, cylinder);

@@ -1,9 +1,9 @@
 //! How far a scan of the built part lies from the part's surface.
 //!
-//! A point's distance is that to the nearest triangle, found by a tree of boxes (rstar). Its sign is that of the normals
-//! around the nearest place, each weighted by the angle of its triangle there, which distinguishes inside from outside also where
-//! that place is an edge or a corner (Bærentzen and Aanæs 2005, *Signed distance computation using the angle weighted
-//! pseudonormal*).
+//! The distance of a point is that to the nearest triangle, found with an R-tree (rstar). Its sign comes from the
+//! normals around the nearest point of the surface, each weighted by the angle of its triangle there, which tells
+//! inside from outside even at an edge or a corner (Bærentzen and Aanæs 2005, *Signed distance computation using the
+//! angle weighted pseudonormal*).
 
 use crate::model::triangle::{SAME_MM, Triangle};
 use crate::model::{Mesh, NO_NEIGHBOUR, Units};
@@ -14,37 +14,38 @@ use rstar::RTree;
 use serde::{Serialize, Serializer};
 use std::ops::RangeInclusive;
 
-/// A point this near to the surface lies on it, mm: files are rounded.
+/// A point this near to the surface counts as on it, mm: files are rounded.
 const ON_SURFACE_MM: f64 = 1e-3;
 
-/// A scan is taken to be in another unit if it then has this fraction of the part's size: it need not show the whole part.
+/// A scan is taken to be in another unit if its size in that unit is this fraction of the part's: it need not show the
+/// whole part.
 const SEEN: RangeInclusive<f64> = 0.5..=1.05;
 
-/// A scan is not where the part is if half its points lie farther off than this fraction of its size.
+/// A scan is misplaced if half of its points are farther off than this fraction of the part's size.
 const FAR: f64 = 0.1;
 
-/// A scan shows the plate up to this height, and from this distance from the part on, mm; nearer, metal and plate cannot be
-/// distinguished.
+/// Points up to this height, and farther than the next distance from the part, show the plate, mm; nearer, metal and
+/// plate cannot be told apart.
 const PLATE_MM: f64 = 0.5;
 const BESIDE_MM: f64 = 1.0;
 
-/// Points between two checks whether the task was cancelled.
+/// Points between two checks for cancellation.
 const BATCH: usize = 50_000;
 
 /// A scan compared with the part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Deviation {
-    /// Distance of each point from the surface, mm: above 0 outside the part, below 0 inside.
+    /// Distance of each point from the surface, mm: positive outside the part, negative inside.
     pub distances: Vec<f64>,
-    /// Their summary, without the plate.
+    /// Summary of the distances, without the plate.
     pub figures: Figures,
     /// Number of points that show the plate on z = 0 next to a part that stands on it.
     pub plate: usize,
-    /// Reasons not to compare the two as they are.
+    /// Reasons to mistrust the comparison.
     pub doubts: Vec<Doubt>,
 }
 
-/// A summary of the distances of a scan's points; every point counts alike.
+/// A summary of the distances of a scan's points; all points have equal weight.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Figures {
     /// Number of points.
@@ -57,32 +58,32 @@ pub struct Figures {
     pub highest: Extreme,
     /// The point farthest inside.
     pub lowest: Extreme,
-    /// What is left to be milled off, mm.
+    /// Machining allowance, mm.
     pub allowance: f64,
-    /// Fraction of the points that lie outside by the allowance at most, or on the surface, 0 to 1.
+    /// Fraction of the points that are on the surface or outside it by at most the allowance, 0 to 1.
     pub within: f64,
-    /// Fraction of the points that lie farther outside, 0 to 1.
+    /// Fraction of the points that are farther outside than the allowance, 0 to 1.
     pub above: f64,
-    /// Fraction of the points that lie inside the part, where metal is missing, 0 to 1.
+    /// Fraction of the points that are inside the part's surface, where metal is missing, 0 to 1.
     pub below: f64,
 }
 
-/// A point with its distance.
+/// A point of the scan and its distance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Extreme {
-    /// Distance from the surface, mm.
+    /// Signed distance from the surface, mm.
     pub distance: f64,
     /// The point, mm.
     pub at: DVec3,
 }
 
-/// A reason not to compare a scan with a part as they are.
+/// A reason to mistrust the comparison of a scan with a part.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Doubt {
-    /// The scan is about as much smaller than the part as numbers in this unit are smaller than those in mm.
+    /// The scan is smaller than the part, by about as much as if it were in this unit.
     #[error("the scan has about 1/{} the size of the part: its numbers seem to be {}, not mm.", .0.in_mm(), .0.plural())]
     ScanUnit(Units),
-    /// The scan is about as much larger.
+    /// The scan is larger than the part, by about as much as if the part were in this unit.
     #[error("the scan is about {} times as large as the part: the numbers of the part seem to be {}, not mm.", .0.in_mm(), .0.plural())]
     PartUnit(Units),
     /// Half of the scan lies farther than this from the part, mm.
@@ -91,7 +92,7 @@ pub enum Doubt {
          the part as it is planned, with z = 0 on the plate."
     )]
     Off(f64),
-    /// The part's surface has holes, near which nothing distinguishes inside from outside.
+    /// The part's surface has holes, near which inside and outside cannot be told apart.
     #[error(
         "the part's surface is not closed ({0} open edges): near its holes, inside and outside cannot be distinguished."
     )]
@@ -108,19 +109,19 @@ impl Serialize for Doubt {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DeviationError {
-    /// No point.
+    /// The scan has no points.
     #[error("the scan holds no points, so there is nothing to compare.")]
     NoPoints,
-    /// No surface.
+    /// The part has no surface.
     #[error("the part has no triangle with an area, so there is no surface to compare the scan with.")]
     NoSurface,
-    /// Stopped by the caller.
+    /// Cancelled by the caller.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// Compares the points of a scan (mm) with the surface of a part that lies in the same coordinates; `allowance` (mm) is
-/// what is left to be milled off.
+/// Compares the points of a scan (mm) with the surface of a part in the same coordinates; `allowance` (mm) is the metal
+/// that is still to be milled off.
 ///
 /// ```
 /// use bead_part::{deviation::deviation, example, task::Task};
@@ -150,7 +151,7 @@ pub fn deviation(part: &Mesh, points: &[DVec3], allowance: f64, task: &Task) -> 
     Ok(Deviation { distances, figures, plate, doubts })
 }
 
-/// The points that do not show the plate, with their distances; all points of a scan that shows nothing else, which is more
+/// The points that do not show the plate, with their distances; all points if none are left, since such a scan is more
 /// likely in another unit.
 fn without_plate(part: &Mesh, points: &[DVec3], distances: &[f64]) -> (Vec<DVec3>, Vec<f64>) {
     let stands = part.bounds().0.z.abs() < ON_SURFACE_MM;
@@ -192,11 +193,11 @@ fn doubts(part: &Mesh, points: &[DVec3], distances: &[f64]) -> Vec<Doubt> {
     unit.into_iter().chain(off).chain((open > 0).then_some(Doubt::Open(open))).collect()
 }
 
-/// The triangles of a part, in a tree of boxes.
+/// The triangles of a part in an R-tree.
 struct Surface(RTree<Triangle>);
 
 impl Surface {
-    /// None where no triangle has an area.
+    /// `None` if no triangle has an area.
     fn of(part: &Mesh) -> Option<Self> {
         let corner = |i: u32| part.vertices.get(i as usize).copied();
         let triangle = |&[a, b, c]: &[u32; 3]| Some(Triangle { corners: [corner(a)?, corner(b)?, corner(c)?] });
@@ -205,7 +206,7 @@ impl Surface {
         (!triangles.is_empty()).then(|| Self(RTree::bulk_load(triangles)))
     }
 
-    /// Distance of a point, mm: above 0 outside, below 0 inside.
+    /// Distance of a point from the surface, mm: positive outside, negative inside.
     fn signed_distance(&self, point: DVec3) -> f64 {
         let at = point.to_array();
         let Some(nearest) = self.0.nearest_neighbor(&at) else { return f64::INFINITY };

@@ -38,37 +38,37 @@ impl Severity {
 /// Something that is wrong, doubtful or worth knowing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// What kind of thing: the name of a check or of a warning, or `reach`, `model` (what was repaired), `plan` (a note)
+    /// What kind of finding: the name of a check or a warning, or `reach`, `model` (what was repaired), `plan` (a note)
     /// or `refused`.
     pub kind: &'static str,
     /// How much it matters.
     pub severity: Severity,
-    /// How many such findings this one represents; it is the first of a check's findings, and the largest of a warning's.
+    /// How many findings this one stands for; it is the first of a check's findings, and the largest of a warning's.
     pub count: usize,
-    /// Index of the layer, from 0; `None` when it concerns the whole plan.
+    /// Index of the layer, from 0; `None` if it concerns the whole plan.
     pub layer: Option<usize>,
     /// Index of the pass in its layer, from 0.
     pub pass: Option<usize>,
-    /// Where, mm; on a layer that is not level, as it is unrolled.
+    /// Position, mm; on a layer that is not level, in unrolled coordinates.
     pub place: Option<DVec3>,
-    /// How large, in the unit that the sentence names.
+    /// Size, in the unit that the sentence names.
     pub size: Option<f64>,
-    /// A sentence that says what, and where.
+    /// A sentence that says what is wrong, and where.
     pub text: String,
     /// A sentence that says what to do.
     pub remedy: Option<String>,
 }
 
-/// What helps against a kind of finding in the program that people use, as a sentence: flags, arguments, buttons.
+/// A remedy for a kind of finding in terms of the user's program (flags, arguments, buttons), as a sentence.
 pub type Words = fn(kind: &str) -> Option<&'static str>;
 
-/// Whether findings of a kind say that there is no metal to weld on.
+/// Whether findings of a kind say that there is no metal underneath to weld on.
 pub fn lacks_metal_below(kind: &str) -> bool {
     let kinds = ["high-start", "nothing-below", "in-the-air", "over-unwelded", "hanging-island", "overhang"];
     kinds.contains(&kind)
 }
 
-/// Turns part of a sentence into a sentence.
+/// Capitalises and punctuates part of a sentence.
 pub fn as_sentence(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map(|first| first.to_uppercase().chain(letters).chain(['.']).collect()).unwrap_or_default()
@@ -86,7 +86,7 @@ impl Finding {
         Self { size: Some(size), ..self }
     }
 
-    /// Adds the words of the program that people use to the remedy.
+    /// Adds the remedy in terms of the user's program.
     #[must_use]
     pub fn in_words(mut self, words: Words) -> Self {
         let sentences = self.remedy.take().into_iter().chain(words(self.kind).map(str::to_owned));

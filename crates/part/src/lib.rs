@@ -1,13 +1,14 @@
-//! Parts for weld deposition: what a file describes, repaired, and its level slices. Nothing here knows about beads or machines.
+//! Parts for weld deposition: what a file describes, repaired, and its level slices. Nothing here knows about beads or
+//! machines.
 //!
 //! | module | what it holds |
 //! | --- | --- |
 //! | [`chart`] | layers that are not level: around an axis, on a cone, square to a direction or a curve |
 //! | [`curve`] | NURBS curves, fits and lengths |
-//! | [`model`] | meshes and curves read from files (STL, 3MF, OBJ, PLY, IGES, SVG), repaired and placed |
+//! | [`model`] | meshes, curves and outlines read from files (STL, 3MF, OBJ, PLY, AMF, IGES, DXF, SVG), repaired and placed |
 //! | [`slice`](mod@slice) | level slices: islands with holes, or the lines of an open surface |
 //! | [`directions`] | a part divided into pieces with directions of their own |
-//! | [`cladding`] | metal over the surface of a part that is there |
+//! | [`cladding`] | metal over the surface of an existing part |
 //! | [`middle_line`] | the curve in the middle of a bent tube, from its sections |
 //! | [`deviation`] | signed distances of measured points to a mesh |
 //! | [`example`] | parametric example parts |

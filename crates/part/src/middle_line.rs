@@ -1,7 +1,8 @@
-//! The guide of a bent tube or bar, from the middles of its sections.
+//! The guide of a bent tube or bar, found from the centroids of its sections.
 //!
-//! From the section on which the part stands, it is followed in short steps: each section is cut square to the way that the middles
-//! so far have taken, and the island that lies ahead is the next one. Where a section is cut a little askew, its middle hardly moves.
+//! The part is followed in short steps from the section on which it stands: each new section is cut square to the
+//! direction that the centroids have taken, and the island ahead is the next section. If a section is cut slightly
+//! askew, its centroid hardly moves.
 
 use crate::chart::{Chart, Guide, Plane};
 use crate::model::Mesh;
@@ -11,7 +12,7 @@ use glam::{DVec2, DVec3};
 use planar::Polygon;
 use std::f64::consts::PI;
 
-/// Why no guide is found.
+/// Why no guide can be found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoMiddleLine {
@@ -23,7 +24,7 @@ pub enum NoMiddleLine {
         "the part stands on {0} sections; a tube or bar stands on one. Turn it so that one end stands on the table"
     )]
     Start(usize),
-    /// A part that is hardly longer than wide.
+    /// A part not much longer than wide.
     #[error(
         "the part is no tube or bar: from its lower end it can be followed for {length:.1} mm only, and it is {width:.1} mm wide"
     )]
@@ -33,35 +34,35 @@ pub enum NoMiddleLine {
         /// Width of the section, mm.
         width: f64,
     },
-    /// A part that divides, or whose section changes at once.
+    /// A part that branches, or whose section changes abruptly.
     #[error("near x {:.1} y {:.1} z {:.1} mm the part branches or its section jumps: cut it there, or give the guide's points", .0.x, .0.y, .0.z)]
     Jump(DVec3),
 }
 
-/// A step, as a part of the radius of a disc as large as the section.
+/// Length of a step, as a fraction of the radius of a disc with the section's area.
 const STEP: f64 = 0.15;
-/// The way ahead is that of this many steps.
+/// Number of steps from which the direction ahead is taken.
 const WAY: usize = 2;
-/// No part is followed for more steps.
+/// Most steps.
 const MOST_STEPS: usize = 20_000;
-/// The lower end is looked at this far above the table, mm.
+/// Height above the table at which the lower end is cut, mm.
 const ASIDE: f64 = 0.05;
-/// A plane is cut as the middle of a layer this thick, mm: a part that ends within it counts as cut.
+/// Thickness of the layer cut at a plane, mm: a part that ends within it counts as cut.
 const THIN: f64 = 1e-3;
-/// The last step is halved this often.
+/// How often the last step is halved.
 const HALVED: usize = 8;
-/// The middle of the next section lies no farther from where it is expected, in radii of the section.
+/// Greatest distance of the next section's centroid from where it is expected, in radii of the section.
 const AHEAD: f64 = 0.35;
-/// A section is no more than this many times as large as the one before it, or as it is as large as this one.
+/// Greatest ratio of the areas of two consecutive sections.
 const LIKE: f64 = 1.1;
-/// The last one is whole: this many times.
+/// The same for the last section, which must be whole.
 const WHOLE: f64 = 1.01;
-/// Corners of the guide are this many steps apart.
+/// Steps between corners of the guide.
 const APART: usize = 3;
-/// Between lines that turn by less than this there is no corner, rad.
+/// Lines that turn by less than this have no corner between them, rad.
 const STRAIGHT: f64 = 0.004;
 
-/// The guide of a tube or bar that stands on one of its ends.
+/// The guide (mm) of a tube or bar that stands on one of its ends.
 ///
 /// ```
 /// use bead_part::{example, middle_line::middle_line, task::Task};
@@ -96,14 +97,14 @@ pub fn middle_line(mesh: &Mesh, task: &Task) -> Result<Guide, NoMiddleLine> {
             Ahead::Nothing => None,
             Ahead::Other(middle) => Some(middle),
         };
-        // The step may end in the face that closes the part.
+        // The step may end inside the face that closes the part.
         let goes_on = other.filter(|_| !matches!(part.ahead(last, forth * radius, before, LIKE), Ok(Ahead::Nothing)));
         if let Some(middle) = goes_on {
             return Err(NoMiddleLine::Jump(middle));
         }
         break;
     }
-    // Such a face may have cut the last section, too.
+    // That face may also have cut the last section.
     if middles.len() > 2 {
         middles.pop();
         sections.pop();
@@ -121,7 +122,7 @@ pub fn middle_line(mesh: &Mesh, task: &Task) -> Result<Guide, NoMiddleLine> {
 #[derive(Clone, Copy)]
 struct Section {
     middle: DVec2,
-    /// Without its holes, mm².
+    /// Area without its holes subtracted, mm².
     area: f64,
 }
 
@@ -135,10 +136,10 @@ impl Section {
     }
 }
 
-/// A part that is followed.
+/// A part being followed.
 struct Followed<'a> {
     mesh: &'a Mesh,
-    /// Larger than all of its coordinates in any plane, mm.
+    /// More than any of its coordinates in any plane, mm.
     reach: f64,
     task: &'a Task,
 }
@@ -147,14 +148,14 @@ struct Followed<'a> {
 enum Ahead {
     /// The next section, and its middle.
     Section(Section, DVec3),
-    /// Nothing near.
+    /// Nothing nearby.
     Nothing,
-    /// Something that is no continuation of it.
+    /// Something that does not continue the section.
     Other(DVec3),
 }
 
 impl Followed<'_> {
-    /// What lies a step ahead of a place.
+    /// What lies one step ahead of a point.
     fn ahead(&self, from: DVec3, step: DVec3, before: Section, like: f64) -> Result<Ahead, Cancelled> {
         let plane = Plane { origin: from + step, up: step.normalize() };
         let islands = self.islands(plane)?;
@@ -169,7 +170,7 @@ impl Followed<'_> {
         Ok(if is_next { Ahead::Section(section, middle) } else { Ahead::Other(middle) })
     }
 
-    /// The last place within a step in which the part goes on, which is halved again and again.
+    /// The last point within a step at which the part continues, found by bisection.
     fn end(&self, from: DVec3, step: DVec3, before: Section) -> Result<Option<DVec3>, Cancelled> {
         let (mut low, mut high, mut last) = (0.0, 1.0, None);
         for _ in 0..HALVED {
@@ -182,7 +183,7 @@ impl Followed<'_> {
         Ok(last)
     }
 
-    /// The islands in which a plane cuts the part, in the plane's coordinates.
+    /// The islands in which a plane cuts the part, in the coordinates of the plane.
     fn islands(&self, plane: Plane) -> Result<Vec<Polygon>, Cancelled> {
         let mut turned = self.mesh.clone();
         let chart = Chart::Plane(plane);
@@ -194,7 +195,8 @@ impl Followed<'_> {
     }
 }
 
-/// The way at the last middle: that of the last steps, turned on by half as much as it turned since the steps before them.
+/// The direction at the last centroid: that of the last steps, turned on by half as much as it turned since the steps
+/// before.
 fn way(middles: &[DVec3]) -> DVec3 {
     let back = |steps: usize| middles[middles.len().saturating_sub(steps + 1)];
     let [recent, earlier] = [back(0) - back(WAY), back(WAY) - back(2 * WAY)];
@@ -203,12 +205,13 @@ fn way(middles: &[DVec3]) -> DVec3 {
     (recent + 0.5 * (recent - earlier)).normalize_or(recent)
 }
 
-/// Every few of the middles, as the corners of a guide that follows them. The arcs at the corners of a polygon lie within it by a
-/// quarter of how far each corner stands out, so corners are moved out by that; where the guide is straight, there are none.
+/// Every few centroids, as the corners of a guide that follows them. The arcs at the corners of a polygon cut inside it
+/// by a quarter of the corner's distance from the midpoint of its neighbours, so corners are moved out by that; where
+/// the guide is straight, there are none.
 fn corners(middles: &[DVec3]) -> Vec<DVec3> {
     let Some((last, others)) = middles.split_last() else { return Vec::new() };
     let mut points: Vec<DVec3> = others.iter().step_by(APART).copied().collect();
-    // The last step is a short one.
+    // The last step is short.
     if points.len() > 1 && (others.len() - 1) % APART < APART / 2 {
         points.pop();
     }

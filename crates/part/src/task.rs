@@ -1,4 +1,4 @@
-//! One handle for long calls: it reports progress and carries the request to stop.
+//! One handle for long calls: it reports progress and carries the request to cancel.
 
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -13,9 +13,9 @@ pub enum Stage {
     Slice,
     /// Laying passes into layers.
     Plan,
-    /// Working out what would be deposited.
+    /// Computing what would be deposited.
     Deposit,
-    /// Working out how warm the part is before each pass.
+    /// Computing how warm the part is before each pass.
     Heat,
 }
 
@@ -39,7 +39,7 @@ pub struct Cancelled;
 
 type Progress = dyn Fn(Stage, f64) + Send + Sync;
 
-/// Progress out, cancellation in. Clones share both, so one clone can stay with the caller.
+/// Progress out, cancellation in. Clones share both, so the caller can keep one.
 #[derive(Clone, Default)]
 pub struct Task {
     cancelled: Arc<AtomicBool>,
@@ -52,7 +52,7 @@ impl Task {
         Self::default()
     }
 
-    /// A task whose stage and fraction (0 to 1) go to `progress`, possibly from several threads.
+    /// A task that calls `progress` with its stage and fraction (0 to 1), possibly from several threads.
     ///
     /// ```
     /// use bead_part::task::{Stage, Task};
@@ -82,7 +82,7 @@ impl Task {
         self.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// Reports how far a stage has come, and fails when the task was cancelled.
+    /// Reports the fraction of a stage that is done; [`Cancelled`] if the task was cancelled.
     pub fn step(&self, stage: Stage, fraction: f64) -> Result<(), Cancelled> {
         if let Some(progress) = &self.progress {
             progress(stage, fraction);
@@ -90,7 +90,7 @@ impl Task {
         self.check()
     }
 
-    /// Fails when the task was cancelled.
+    /// [`Cancelled`] if the task was cancelled.
     pub fn check(&self) -> Result<(), Cancelled> {
         if self.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
     }

@@ -1,5 +1,5 @@
-//! Nothing is lost silently: whatever is dropped, closed or cannot be built is a [`Warning`], and
-//! [`Warnings`] sums them up over the layers in sentences for people.
+//! Nothing is lost silently: whatever is dropped, closed or cannot be built becomes a [`Warning`], and [`Warnings`]
+//! sums them up over the layers in sentences for people.
 
 mod about;
 
@@ -24,26 +24,28 @@ pub enum WarningKind {
     ThinFeature,
     /// A whole island is narrower than a bead and gets none; the size is its area, mm².
     IslandTooSmall,
-    /// Part of the slice is narrower than the narrowest bead and gets such a bead, which reaches outside; the size is
-    /// its area, mm².
+    /// Part of the slice is narrower than the narrowest bead and still gets one, which reaches outside; the size is its
+    /// area, mm².
     ThinWall,
-    /// The strategy could not fill an island (its passes left it, crossed, or were none), and another one does; the size is
-    /// its area, mm².
+    /// The strategy could not fill an island (its passes left it, crossed, or there were none), so another one does;
+    /// the size is its area, mm².
     Refilled,
-    /// Beads leave part of an island bare that one could reach; the size is that area, mm².
+    /// Beads leave bare a part of an island that they could reach; the size is that area, mm².
     Bare,
-    /// Beads leave bare what is a face of the part that is milled from the preform; the size is that area, mm².
+    /// Beads leave bare an area needed for a face of the part that is milled from the preform; the size is that area,
+    /// mm².
     Undersize,
-    /// Passes that leave the part or cross, and that nothing else could replace; the size is the island's area, mm².
+    /// Passes leave the part or cross, and nothing else could replace them; the size is the island's area, mm².
     Unsound,
-    /// The lowest layers have no room for a bead, so the first would be laid above the plate; the size is how high, mm.
+    /// The lowest layers have no room for a bead, so the first would be laid above the plate; the size is its height,
+    /// mm.
     HighStart,
-    /// No bead lies below a whole layer; the size is the gap, mm.
+    /// A whole layer has no bead below it; the size is the gap, mm.
     NothingBelow,
-    /// Less than half of a pass lies over metal, or a long stretch of it is clear of any; the size is the length without
+    /// Less than half of a pass lies over metal, or a long section of it over none; the size is the length without
     /// metal below, mm.
     InTheAir,
-    /// The same over a place of the layer below that got no bead; the size is the length without metal below, mm.
+    /// The same, above a part of the layer below that got no bead; the size is the length without metal below, mm.
     OverUnwelded,
     /// A small new island, or a stub of a bead, hangs in the air and was left out; the size is its area, mm².
     HangingIsland,
@@ -51,9 +53,9 @@ pub enum WarningKind {
     LayerThickness,
     /// Part of a layer reaches farther than check.max_overhang beyond the one below; the size is its area, mm².
     Overhang,
-    /// A pass is over before its arc is steady; the size is its length, mm.
+    /// A pass ends before its arc is steady; the size is its length, mm.
     ShortArc,
-    /// A pass is longer than one program of a controller and was cut; the size is how often its arc is struck again.
+    /// A pass is too long for one program of the controller and was cut; the size is the number of extra arc starts.
     Relit,
     /// A layer has more points than check.max_points; the size is their number.
     ManyPoints,
@@ -63,7 +65,7 @@ pub enum WarningKind {
     PassTooShort,
     /// Metal does not cool to interpass.max_temperature before a pass; the size is its temperature, °C.
     NeverCools,
-    /// A pass that begins within interpass.max_temperature meets hotter metal along the way; the size is its temperature, °C.
+    /// A pass that starts within interpass.max_temperature runs into hotter metal; the size is its temperature, °C.
     HotAhead,
     /// A pass was cut where the metal ahead of the torch would be too hot (interpass.along); the size is 1 for each cut.
     Paused,
@@ -77,7 +79,7 @@ pub enum WarningKind {
 pub const SLIVER_MM: f64 = 0.05;
 
 impl WarningKind {
-    /// Whether a program with this fault is only written if somebody insists.
+    /// Whether a program with this fault is written only on explicit request.
     pub fn forbids(self) -> bool {
         matches!(
             self,
@@ -127,37 +129,37 @@ pub struct Warning {
     pub size: f64,
 }
 
-/// All events of one kind.
+/// Summary of all warnings of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WarningSummary {
     /// What happened.
     pub kind: WarningKind,
-    /// How often.
+    /// Number of warnings.
     pub count: usize,
     /// Layers, as ranges of indices from 0, both ends included.
     pub layers: Vec<(usize, usize)>,
-    /// The largest one.
+    /// The largest warning.
     pub largest: Warning,
-    /// Top of its layer, mm.
+    /// Height of the top of the largest one's layer, mm.
     pub z: f64,
-    /// Where it lies in space, mm, if its layer is not level.
+    /// Its position in space, mm, if its layer is not level.
     #[serde(default)]
     pub at: Option<DVec3>,
     /// Sum of the sizes, in the unit of the kind.
     pub total: f64,
 }
 
-/// The events of a run, summed up by kind.
+/// The warnings of a run, summed up by kind.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Warnings(BTreeMap<WarningKind, WarningSummary>);
 
 impl Warnings {
-    /// Counts one event on a layer whose top lies at `z` (mm); events come in the order of layers.
+    /// Counts one warning on a layer whose top lies at `z` (mm); warnings come in the order of layers.
     pub fn add(&mut self, warning: Warning, z: f64) {
         self.add_at(warning, z, None);
     }
 
-    /// The same for an event that lies elsewhere in space (mm) than on its layer.
+    /// The same for a warning whose position in space (mm) differs from that on its layer.
     pub fn add_at(&mut self, warning: Warning, z: f64, at: Option<DVec3>) {
         let summary = self.0.entry(warning.kind).or_insert_with(|| WarningSummary {
             kind: warning.kind,
@@ -179,7 +181,7 @@ impl Warnings {
         }
     }
 
-    /// The sums, by kind.
+    /// The summaries, by kind.
     pub fn summaries(&self) -> impl Iterator<Item = &WarningSummary> {
         self.0.values()
     }

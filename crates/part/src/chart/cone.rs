@@ -1,7 +1,7 @@
 //! Layers on a cone: domes and overhangs. Each layer is a cone of the same angle, farther out; its tip lies farther along the axis.
 //!
-//! On a layer, a point has an angle about the axis and a distance from the layer's tip. Unrolled, the layer is a sector: the
-//! distance stays, the angle becomes smaller by the sine of the cone's half angle.
+//! A point on a layer has an angle about the axis and a distance from the layer's tip. Unrolled, the layer is a sector:
+//! the distance is kept, and the angle is multiplied by the sine of the cone's half angle.
 
 use super::At;
 use super::polar::{Around, Axes, Polar};
@@ -14,14 +14,14 @@ pub struct Cone {
     pub tip: DVec3,
     /// Unit vector along the axis, into the cone.
     pub axis: DVec3,
-    /// Between the axis and the cone, °.
+    /// Angle between the axis and the cone's surface, °.
     pub half_angle: f64,
     /// Angle at which layers are cut open and unrolled, °; about an axis along z it is counted from x.
     pub seam: f64,
 }
 
 impl Cone {
-    /// The same layers, beginning lower by some mm.
+    /// The same layers, starting `by` mm lower.
     pub(super) fn lowered(&self, by: f64) -> Self {
         Self { tip: self.tip + self.axis * (by / self.half_angle.to_radians().sin()), ..*self }
     }
@@ -48,7 +48,7 @@ impl Polar for Cone {
         let (sin, cos) = self.half_angle.to_radians().sin_cos();
         let line = self.axis * cos + outward * sin;
         let place = self.tip - self.axis * (height / sin) + line * along;
-        // Unrolled, the straight line at this angle points away from the tip.
+        // Unrolled, this angle's straight line points away from the tip.
         let (x, y) = (angle * sin).sin_cos();
         At { place, along: [around * y + line * x, line * y - around * x], normal: outward * cos - self.axis * sin }
     }

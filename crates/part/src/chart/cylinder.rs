@@ -1,6 +1,7 @@
 //! Layers around an axis: bosses and flanges on a shaft, blades on a hub, the overlay of a pipe, outside or inside.
 //!
-//! u = angle × radius at the layer's middle, v runs along the axis, h is the distance from the radius at which the build begins.
+//! u = angle × radius at the layer's middle, v runs along the axis, h is the distance from the radius at which the
+//! build begins; all mm.
 
 use super::At;
 use super::polar::{Around, Axes, Polar};
@@ -65,7 +66,7 @@ impl Polar for Cylinder {
         let [outward, around] = self.axes().outward_and_around(angle);
         let sign = self.side.sign();
         let place = self.through + self.axis * along + outward * self.radius_at(height);
-        // Seen along the normal, u and v are turned as x and y are seen from above.
+        // Seen along the normal, u and v are oriented like x and y seen from above.
         At { place, along: [around * sign, self.axis], normal: outward * sign }
     }
 

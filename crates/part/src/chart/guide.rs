@@ -1,13 +1,14 @@
 //! Layers square to a curve: elbows, bent tubes and bars.
 //!
-//! The curve is what a pipe is drawn by: points, and a radius at which each corner is bent. So it is straight lines and arcs, and
-//! everything about it is closed form. h is the length along it, (u, v) lie in the plane square to it, which is carried along without
-//! a twist. In a bend, a layer is a wedge: a millimetre of h is `1 - bend · (u, v)` mm thick ([`Guide::rise`]).
+//! The curve is given as a pipe is dimensioned: by points, and a radius for the bend at each corner. So it consists of
+//! straight lines and arcs, and everything about it has a closed form. h is the length along it; (u, v) lie in the
+//! plane square to it, which is carried along without twist. In a bend a layer is a wedge: 1 mm of h is
+//! `1 - bend · (u, v)` mm thick ([`Guide::rise`]).
 
 use super::At;
 use glam::{DQuat, DVec2, DVec3};
 
-/// A curve of straight lines and arcs, to which layers are square.
+/// A curve of straight lines and arcs; layers are square to it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Guide {
     points: Vec<DVec3>,
@@ -32,9 +33,9 @@ struct Span {
     /// Where it begins and ends along the guide, mm.
     from: f64,
     to: f64,
-    /// The place halfway.
+    /// The point halfway along.
     middle: DVec3,
-    /// Towards the centre of the arc in (u, v), 1 / radius long, 1/mm; 0 on straight lines.
+    /// Vector towards the centre of the arc in (u, v), of length 1 / radius, 1/mm; 0 on straight lines.
     bend: DVec2,
 }
 
@@ -45,7 +46,7 @@ pub enum GuideError {
     /// Fewer than two points, or two in the same place.
     #[error("a guide needs two points or more, all in different places")]
     Points,
-    /// Neither one radius nor one for each corner.
+    /// A number of radii that is neither one nor one per corner.
     #[error("{radii} radii are given for {corners} corners: write one for all, or one for each")]
     Radii {
         /// How many radii there are.
@@ -53,13 +54,13 @@ pub enum GuideError {
         /// How many points are corners.
         corners: usize,
     },
-    /// A corner too sharp for a bend.
+    /// A corner too sharp to be bent.
     #[error("at point {point} the guide turns back on itself")]
     Back {
         /// Number of the point, from 1.
         point: usize,
     },
-    /// No room for the arcs.
+    /// Not enough length between two points for the arcs there.
     #[error(
         "from point {} to point {} it is {length:.3} mm, but the bends there take {needed:.3} mm of it: give smaller radii",
         .points[0], .points[1]
@@ -69,13 +70,14 @@ pub enum GuideError {
         points: [usize; 2],
         /// Distance between them, mm.
         length: f64,
-        /// What the arcs take of it, mm.
+        /// Length that the arcs take up, mm.
         needed: f64,
     },
 }
 
 impl Guide {
-    /// A guide through points with bends as wide as fit; the points are rounded to 0.001 mm, so that they are short as text.
+    /// A guide through points (mm), with the largest bends that fit; the points are rounded to 0.001 mm, so that they
+    /// are short as text.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -87,8 +89,8 @@ impl Guide {
         Self::new(points, Vec::new())
     }
 
-    /// A guide through `points` (mm), whose corners are bent at `radii` (mm): one for all, one for each, or none for the largest
-    /// that fit.
+    /// A guide through `points` (mm) whose corners are bent to `radii` (mm): one radius for all, one for each corner,
+    /// or none for the largest that fit.
     ///
     /// ```
     /// use bead_part::chart::Guide;
@@ -133,17 +135,17 @@ impl Guide {
         Ok(Self { points, radii, spans })
     }
 
-    /// The points that it was made from, mm.
+    /// The points it was made from, mm.
     pub fn points(&self) -> &[DVec3] {
         &self.points
     }
 
-    /// The radii that it was made from, mm.
+    /// The radii it was made from, mm.
     pub fn radii(&self) -> &[f64] {
         &self.radii
     }
 
-    /// Length of the curve, mm. It goes on straight at both ends.
+    /// Length of the curve, mm. Beyond both ends it continues straight.
     pub fn length(&self) -> f64 {
         self.spans.last().map_or(0.0, |last| last.to)
     }
@@ -153,18 +155,18 @@ impl Guide {
         self.spans.iter().filter_map(|span| span.centre()).map(|(_, radius)| radius).reduce(f64::min)
     }
 
-    /// How thick a millimetre of h is at a place of the layer at `height` (mm): 1 on straight lines, less towards the centre of a
-    /// bend, 0 and less from there on.
+    /// Thickness of 1 mm of h at point `p` (u, v) of the layer at `height` (mm), mm: 1 on straight lines, less towards
+    /// the centre of a bend, 0 or less from the centre on.
     pub fn rise(&self, p: DVec2, height: f64) -> f64 {
         1.0 - self.bend(height).dot(p)
     }
 
-    /// Towards the centre of the bend at a height (mm), 1 / radius long, 1/mm; 0 on straight lines.
+    /// Vector towards the centre of the bend at a height (mm), of length 1 / radius, 1/mm; 0 on straight lines.
     pub(super) fn bend(&self, height: f64) -> DVec2 {
         self.span(height).bend
     }
 
-    /// Where a point of space lies; of several places, that nearest to the curve.
+    /// Coordinates (u, v, h) of a point in space; where there are several, those nearest to the curve.
     pub(super) fn coordinates(&self, p: DVec3) -> DVec3 {
         let last = self.spans.len() - 1;
         let mut best = (f64::INFINITY, DVec3::ZERO);
@@ -185,7 +187,7 @@ impl Guide {
         best.1
     }
 
-    /// Where an edge crosses the first plane between its heights (mm) in which a line and an arc meet.
+    /// Where an edge crosses the first plane between its heights (mm) in which two spans meet.
     pub(super) fn joint_between(&self, [a, b]: [DVec3; 2], heights: [f64; 2]) -> Option<DVec3> {
         let (low, high) = (heights[0].min(heights[1]) + AT_JOINT, heights[0].max(heights[1]) - AT_JOINT);
         let first = self.spans.partition_point(|span| span.to < low);
@@ -196,14 +198,14 @@ impl Guide {
         (part > 0.0 && part < 1.0).then(|| a.lerp(b, part))
     }
 
-    /// A point with these coordinates in space.
+    /// The point in space with these coordinates.
     pub(super) fn place(&self, p: DVec3) -> DVec3 {
         let Frame { origin, along: [u, v], .. } = self.span(p.z).frame(p.z);
         origin + u * p.x + v * p.y
     }
 
-    /// A point near the layer with this middle (mm): straight out of it, within the layer as far as that is thick there, and travels
-    /// above it as far as they are.
+    /// The point in space for a point near the layer with this middle (mm). Heights are measured straight out of the
+    /// layer and scaled by its local thickness up to [`WITHIN`] mm; above that, for travels, they are true.
     pub(super) fn at(&self, p: DVec3, middle: f64) -> At {
         let Frame { origin, along, forth } = self.span(middle).frame(middle);
         let (rise, out) = (self.rise(p.truncate(), middle), p.z - middle);
@@ -211,7 +213,7 @@ impl Guide {
         At { place: origin + along[0] * p.x + along[1] * p.y + forth * out, along, normal: forth }
     }
 
-    /// The same guide, beginning earlier by some mm.
+    /// The same guide, starting `by` mm earlier.
     pub(super) fn begun_earlier(&self, by: f64) -> Self {
         let mut points = self.points.clone();
         points[0] -= self.spans[0].start.forth * by;
@@ -221,7 +223,7 @@ impl Guide {
         Self::new(points, radii).unwrap_or_else(|_| self.clone())
     }
 
-    /// Back from [`Self::at`].
+    /// Inverse of [`Self::at`].
     pub(super) fn on_layer(&self, p: DVec3, middle: f64) -> DVec3 {
         let Frame { origin, along, forth } = self.span(middle).frame(middle);
         let from = p - origin;
@@ -240,13 +242,13 @@ impl Guide {
 /// An arc in place of a corner.
 #[derive(Debug, Clone, Copy)]
 struct Bend {
-    /// mm
+    /// Radius, mm.
     radius: f64,
     /// How far from the corner it begins and ends, mm.
     cut: f64,
 }
 
-/// What the arcs at the beginning and at the end of a leg take of it, mm.
+/// Length that the arcs at both ends of a leg take up, mm.
 fn cut_before(bends: &[Option<Bend>], leg: usize) -> f64 {
     leg.checked_sub(1).map_or(0.0, |corner| cut_after(bends, corner))
 }
@@ -257,20 +259,20 @@ fn cut_after(bends: &[Option<Bend>], leg: usize) -> f64 {
 
 /// Points of a guide lie farther apart than this, mm.
 const SHORTEST: f64 = 1e-3;
-/// Lines whose half angle has a tangent below this are one.
+/// Lines are collinear if the tangent of half the angle between them is below this.
 const STRAIGHT: f64 = 1e-9;
-/// Lines turn by less than this, rad.
+/// Lines must turn by less than this, rad.
 const SHARPEST: f64 = 3.0;
-/// Arcs that fill a line may be longer than it by this part.
+/// Arcs may exceed the length of their line by this fraction, for rounding.
 const ROUNDING: f64 = 1e-9;
-/// Heights this close to where two spans meet lie on it, mm.
+/// Heights this close to the joint of two spans count as on it, mm.
 const AT_JOINT: f64 = 1e-6;
-/// Up to so far above its middle, mm, a layer is as thick as it is there; higher up there are only travels.
+/// Up to this height above its middle, mm, the local thickness of a layer applies; higher up there are only travels.
 const WITHIN: f64 = 2.5;
-/// How much a place beyond the end of a span is worse than one aside of it.
+/// Weight of a distance beyond the end of a span, relative to a distance beside it.
 const BEYOND: f64 = 1e3;
 
-/// Lines and arcs one after another.
+/// The spans: lines and arcs in sequence.
 fn spans(start: DVec3, legs: &[DVec3], bends: &[Option<Bend>]) -> Vec<Span> {
     let forth = legs[0].normalize();
     let turn = DQuat::from_rotation_arc(DVec3::Z, forth);
@@ -297,7 +299,7 @@ fn spans(start: DVec3, legs: &[DVec3], bends: &[Option<Bend>]) -> Vec<Span> {
 }
 
 impl Span {
-    /// Unit vector to the centre of the arc, and the arc's radius, mm; `None` on a straight line.
+    /// Unit vector towards the centre of the arc in (u, v), and the arc's radius, mm; `None` on a straight line.
     fn centre(&self) -> Option<(DVec2, f64)> {
         let radius = self.bend.length().recip();
         radius.is_finite().then(|| (self.bend * radius, radius))

@@ -1,8 +1,8 @@
-//! Charts: how the layers of a part lie in space, where they are not level.
+//! Charts: the shape of a part's layers where they are not level.
 //!
-//! A chart gives each point of space coordinates (u, v, h): h is the height over the surface on which the build begins, (u, v)
-//! are millimetres on a layer. A layer of a plan is a plane in the chart, so that everything between slicing and welding
-//! sees level layers; [`Sheet`] takes its points back to space.
+//! A chart gives each point in space coordinates (u, v, h), all mm: h is the height above the surface on which the
+//! build begins, (u, v) are lengths on a layer. A layer of a plan is a plane in the chart, so everything between
+//! slicing and welding sees level layers; [`Sheet`] maps its points back to space.
 //!
 //! | file | what it holds |
 //! | --- | --- |
@@ -41,7 +41,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-/// How the layers of a part lie in space. By default they are level. In files it is text, as people write it.
+/// The shape of a part's layers; level by default. In files it is text, as people write it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Chart {
@@ -53,7 +53,7 @@ pub enum Chart {
     Cone(Cone),
     /// Planes square to a curve.
     Guide(Arc<Guide>),
-    /// Over a surface.
+    /// Parallel to a surface.
     Surface(Arc<Surface>),
 }
 
@@ -66,15 +66,15 @@ impl Default for Chart {
 /// A point of a layer in space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct At {
-    /// mm
+    /// Position, mm.
     pub place: DVec3,
-    /// Unit vectors along which u and v grow.
+    /// Unit vectors along which u and v increase.
     pub along: [DVec3; 2],
-    /// Unit vector out of the layer, along which h grows.
+    /// Unit vector out of the layer, along which h increases.
     pub normal: DVec3,
 }
 
-/// How layers lie, by how it is computed.
+/// The kinds of charts, by how they are computed.
 enum Lie<'a> {
     Flat(&'a Plane),
     Along(&'a Guide),
@@ -82,16 +82,16 @@ enum Lie<'a> {
     Around(&'a dyn Polar),
 }
 
-/// One layer of a chart. Lengths on it are true at its middle.
+/// One layer of a chart. Lengths on it are true at its mid-height.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sheet<'a> {
     chart: &'a Chart,
-    /// mm
+    /// Height h of its middle, mm.
     middle: f64,
 }
 
 impl Chart {
-    /// Whether layers are level and h is z: the part's coordinates are those of the chart.
+    /// Whether layers are level and h is z, so that chart and part have the same coordinates.
     pub fn is_level(&self) -> bool {
         *self == Self::default()
     }
@@ -101,7 +101,7 @@ impl Chart {
         self.polar().is_some()
     }
 
-    /// The same layers, beginning lower by some mm: what lies under the first layer is then among them.
+    /// The same layers, starting `by` mm lower, so that they include what lies under the first layer.
     pub fn lowered(&self, by: f64) -> Self {
         match self {
             Self::Plane(plane) => Self::Plane(Plane { origin: plane.origin - plane.up * by, ..*plane }),
@@ -126,7 +126,7 @@ impl Chart {
         }
     }
 
-    /// The text by which people know it, without long lists of numbers.
+    /// Its text, without long lists of numbers.
     pub fn short(&self) -> String {
         match self {
             Self::Surface(surface) => format!("surface:up={}, over {} heights", surface.up(), surface.heights().len()),
@@ -134,12 +134,13 @@ impl Chart {
         }
     }
 
-    /// The layer with this middle, mm.
+    /// The layer whose middle is at height `middle`, mm.
     pub fn sheet(&self, middle: f64) -> Sheet<'_> {
         Sheet { chart: self, middle }
     }
 
-    /// The coordinates of a point of space, unrolled at its own height; angles lie within half a turn of where a layer begins.
+    /// The coordinates of a point in space, unrolled at its own height; angles lie within half a turn of the start of a
+    /// layer.
     ///
     /// ```
     /// use bead_part::chart::Chart;
@@ -165,12 +166,12 @@ impl Chart {
         }
     }
 
-    /// Whether layers are thicker at some places than at others.
+    /// Whether the thickness of a layer varies from point to point.
     pub fn has_wedges(&self) -> bool {
         matches!(self, Self::Guide(_))
     }
 
-    /// The volume in space of a mesh that is given in the chart's coordinates, mm³.
+    /// The volume in space, mm³, of a mesh given in the chart's coordinates.
     pub fn volume(&self, mesh: &Mesh) -> f64 {
         let Self::Guide(guide) = self else { return mesh.volume() };
         let mut placed = mesh.clone();
@@ -178,7 +179,8 @@ impl Chart {
         placed.volume()
     }
 
-    /// How much farther apart than planned beads lie at a place of a layer, at most: 1 but on the slopes of a surface.
+    /// The greatest factor by which beads lie farther apart than planned at a point of a layer: 1 except on the slopes
+    /// of a surface.
     pub fn stretch(&self, p: DVec2) -> f64 {
         match self {
             Self::Surface(surface) => surface.stretch(p),
@@ -186,12 +188,12 @@ impl Chart {
         }
     }
 
-    /// Distance of a point from the axis, mm; `None` where layers are planes.
+    /// Distance of a point from the axis, mm; `None` for charts without an axis.
     pub fn off_axis(&self, p: DVec3) -> Option<f64> {
         self.polar().map(|polar| polar.off_axis(p))
     }
 
-    /// How layers around an axis are unrolled; none where they are planes.
+    /// How layers around an axis are unrolled; `None` for charts without an axis.
     fn polar(&self) -> Option<&dyn Polar> {
         match self {
             Self::Plane(_) | Self::Guide(_) | Self::Surface(_) => None,
@@ -212,7 +214,7 @@ impl Chart {
 }
 
 impl Sheet<'_> {
-    /// A point with these coordinates in space.
+    /// The point in space with these coordinates.
     pub fn at(&self, p: DVec3) -> At {
         match self.chart.lie() {
             Lie::Flat(plane) => plane.at(p),
@@ -226,7 +228,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// The coordinates of a point of space, within half a turn of `near`.
+    /// The coordinates of a point in space, its angle within half a turn of that of `near`.
     pub fn coordinates(&self, p: DVec3, near: DVec2) -> DVec3 {
         match self.chart.lie() {
             Lie::Flat(plane) => plane.coordinates(p),
@@ -241,7 +243,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// How thick a millimetre of h is at a place: 1 but on a wedge.
+    /// Thickness of 1 mm of h at a point of the layer, mm: 1 except on a wedge.
     pub fn rise(&self, p: DVec2) -> f64 {
         match self.chart {
             Chart::Guide(guide) => guide.rise(p, self.middle),
@@ -249,12 +251,13 @@ impl Sheet<'_> {
         }
     }
 
-    /// The part of a layer within some bounds (mm) on which a millimetre of h is thicker than this; `None` where there is none.
+    /// The part of a layer, within `bounds` (mm), on which 1 mm of h is more than `more` mm thick; `None` if there is
+    /// none.
     pub fn rising(&self, more: f64, bounds: &Bounds) -> Option<Polygon> {
         let Chart::Guide(guide) = self.chart else { return None };
         let bend = guide.bend(self.middle);
         let reach = bounds.min.length() + bounds.max.length() + bounds.size().length();
-        // On a straight line all of the layer is, or nothing.
+        // On a straight line that is all of the layer or nothing.
         let (outwards, from) = match bend.try_normalize() {
             Some(inwards) => (-inwards, (more - 1.0) / bend.length()),
             None => (DVec2::X, if more < 1.0 { -reach } else { reach }),
@@ -263,7 +266,7 @@ impl Sheet<'_> {
         (from < reach).then(|| Polygon::simple(Ring::new(vec![near - aside, far - aside, far + aside, near + aside])))
     }
 
-    /// Where a point of another layer lies over or under this one, along the normal.
+    /// The point of this layer over or under a point of another layer, along the normal.
     pub fn across(&self, p: DVec2, from: &Sheet<'_>) -> DVec2 {
         let Some(polar) = self.chart.polar() else { return p };
         let (angle, along) = polar.rolled(p, from.middle);
@@ -271,27 +274,27 @@ impl Sheet<'_> {
         polar.unrolled(angle, along, self.middle)
     }
 
-    /// Whether a layer goes on turn after turn as it is unrolled. On a cone a second turn would lie over the first.
+    /// Whether the unrolled layer may continue beyond one turn. On a cone a second turn would overlap the first.
     fn goes_on(&self) -> bool {
         matches!(self.chart, Chart::Cylinder(_))
     }
 
-    /// How many turns after a place another comes; 0 where layers do not go on turn after turn.
+    /// Number of turns about the axis from `p` to `to`; 0 where layers do not continue beyond one turn.
     pub fn turns_to(&self, p: DVec2, to: DVec2) -> f64 {
         let angle = |polar: &dyn Polar, p: DVec2| polar.rolled(p, self.middle).0;
         let polar = self.chart.polar().filter(|_| self.goes_on());
         polar.map_or(0.0, |polar| (angle(polar, to) - angle(polar, p)) / TAU)
     }
 
-    /// The same place some turns further around the axis; `None` where layers do not go on turn after turn.
+    /// The same point some turns further around the axis; `None` where layers do not continue beyond one turn.
     pub fn turned(&self, p: DVec2, turns: f64) -> Option<DVec2> {
         let polar = self.chart.polar().filter(|_| self.goes_on())?;
         let (angle, along) = polar.rolled(p, self.middle);
         Some(polar.unrolled(angle + turns * TAU, along, self.middle))
     }
 
-    /// The part of a layer that goes on turn after turn between two angles (rad), as far as `reach` (mm) along its straight lines to
-    /// both sides.
+    /// The part of an unrolled layer between two angles (rad), extended by `reach` (mm) along the layer's straight
+    /// lines to both sides.
     fn sector(&self, [from, to]: [f64; 2], reach: f64) -> Polygon {
         let Some(polar) = self.chart.polar() else { return Polygon::default() };
         let count = ((to - from) / SECTOR_STEP).ceil().max(1.0) as usize;
@@ -302,14 +305,16 @@ impl Sheet<'_> {
         Polygon::simple(Ring::new(near.chain(far).collect()))
     }
 
-    /// Where a point lies along the seam at this angle (rad), mm; `None` where it is farther from it than `within` (mm).
+    /// Position of a point along the seam at this angle (rad), mm; `None` if it is farther than `within` (mm) from the
+    /// seam.
     fn on_seam(&self, p: DVec2, angle: f64, within: f64) -> Option<f64> {
         let polar = self.chart.polar()?;
         let (_, along) = polar.rolled(p, self.middle);
         (polar.unrolled(angle, along, self.middle).distance(p) <= within).then_some(along)
     }
 
-    /// A point some turns further on; one within `within` (mm) of a seam is also moved over it, by `over` (mm).
+    /// A point some turns further on; if it is within `within` (mm) of a seam, it is also moved across it by `over`
+    /// (mm).
     fn over_seam(&self, p: DVec2, turns: f64, within: f64, over: f64) -> DVec2 {
         let Some(polar) = self.chart.polar() else { return p };
         let (angle, along) = polar.rolled(p, self.middle);
@@ -320,8 +325,9 @@ impl Sheet<'_> {
         further(side * over / around.max(over) * SMALL_TURN)
     }
 
-    /// Points between two (without the first, with the last) so close together that straight pieces in space between them
-    /// stay within `tolerance` (mm) of the straight piece in the chart, and normals turn by no more than `angle` (rad) on each.
+    /// Points between `from` (excluded) and `to` (included), so close that straight lines in space between them stay
+    /// within `tolerance` (mm) of the straight line in the chart, and the normal turns by at most `angle` (rad) along
+    /// each.
     pub fn divided(&self, from: DVec3, to: DVec3, tolerance: f64, angle: f64) -> impl Iterator<Item = DVec3> + use<> {
         let count = match self.chart {
             Chart::Plane(_) | Chart::Guide(_) => 1,
@@ -350,11 +356,11 @@ impl Sheet<'_> {
     }
 }
 
-/// A straight piece is never divided into more than this.
+/// Most pieces into which a straight line is divided.
 const MOST_PIECES: usize = 1 << 16;
 
-/// rad
+/// A small angle, rad, for measuring lengths around the axis.
 const SMALL_TURN: f64 = 1e-3;
 
-/// Sectors have corners this close together, rad: their far sides lie well outside of what is cut.
+/// Sectors have corners this close together, rad: their far sides lie well outside what is cut.
 const SECTOR_STEP: f64 = 0.2;

@@ -1,5 +1,5 @@
-//! Layers square to a direction: a rigid motion. Square to z through the origin they are the level layers of a part that
-//! stands on a plate.
+//! Layers square to a direction: a rigid motion. Square to z through the origin they are the level layers of a part
+//! standing on a plate.
 
 use super::At;
 use crate::model::{Mesh, cut};
@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Plane {
-    /// The point of the first layer's underside that has the coordinates 0, mm.
+    /// The point on the underside of the first layer that has coordinates 0, mm.
     pub origin: DVec3,
-    /// Unit vector along which layers follow one another.
+    /// Unit vector along which layers are stacked.
     pub up: DVec3,
 }
 
-/// Faces this close above a plane lie in it, mm: those that only touch it leave nothing.
+/// Faces this close above a plane count as lying in it, mm: what only touches the plane leaves nothing.
 const IN_IT: f64 = 1e-4;
 
 impl Default for Plane {
@@ -30,13 +30,13 @@ impl Plane {
         DQuat::from_rotation_arc(DVec3::Z, self.up)
     }
 
-    /// Rounded to 0.001 mm and 1e-6, so that it is short as text.
+    /// Rounded to 0.001 mm and to 1e-6 in direction, so that its text is short.
     pub(crate) fn rounded(self) -> Self {
         let to = |v: DVec3, places: f64| (v * places).round() / places + DVec3::ZERO;
         Self { origin: to(self.origin, 1e3), up: to(self.up, 1e6) }
     }
 
-    /// What of a mesh lies above the plane, closed by a flat face; nothing of one that lies below.
+    /// The part of a mesh above the plane, closed by a flat face; empty if all of it lies below.
     ///
     /// ```
     /// use bead_part::{chart::Plane, example};
@@ -59,7 +59,7 @@ impl Plane {
         own
     }
 
-    /// The coordinates of a point of space on the plane: along it, and its height above it, mm.
+    /// The coordinates of a point in space: two along the plane, and its height above it, mm.
     pub fn coordinates(&self, p: DVec3) -> DVec3 {
         self.turn().conjugate() * (p - self.origin)
     }

@@ -1,30 +1,30 @@
-//! Islands that cross the seam, where a layer around an axis is unrolled: their halves are put together again, and each island is
-//! kept once. What goes all around stays cut open, each layer elsewhere, so that no cut lies over another. On a cone, where a
-//! second turn would lie over the first, islands end at the seam.
+//! Islands that cross the seam, where a layer around an axis is unrolled: their halves are joined again, and each
+//! island is kept once. A ring all the way around stays cut open, at a different angle in each layer, so that no cut
+//! lies over another. On a cone, where a second turn would overlap the first, islands end at the seam.
 
 use super::Sheet;
 use planar::{DVec2, Polygon, Region, Ring};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-/// Points this close to the seam lie on it, mm.
+/// Points this close to the seam count as on it, mm.
 const ON_SEAM: f64 = 2e-3;
-/// By how much halves overlap, so that they become one, mm.
+/// Halves overlap by this to become one, mm.
 const OVERLAP: f64 = 1e-3;
-/// Stretches of the seam that two halves share must be longer than this, mm.
+/// Two halves must share more than this length of the seam, mm.
 const SHARED: f64 = 1e-2;
 
-/// By how much of a turn the cut moves from one layer to the next: the golden section keeps it away from all that came before.
+/// The cut moves by this fraction of a turn from layer to layer: the golden ratio keeps it away from all earlier cuts.
 const ON: f64 = 0.618_034;
 
-/// The islands of the layer with a number, put together across the seam, as they lie on the sheet of their layer. `cut` is the
-/// sheet on which the mesh was cut.
+/// The islands of the layer with this number, joined across the seam, in the coordinates of `layer`. `cut` is the sheet
+/// on which the mesh was cut.
 pub fn joined(islands: Vec<Polygon>, number: usize, cut: &Sheet<'_>, layer: &Sheet<'_>) -> Vec<Polygon> {
     let islands = together(islands, TAU * (ON * number as f64).fract(), cut);
     if cut == layer { islands } else { islands.iter().map(|island| island.moved(|p| layer.across(p, cut))).collect() }
 }
 
-/// What goes all around is cut open `later` (rad) than at the seam.
+/// Joins islands across the seam; a ring all the way around is cut open at `later` (rad) past the seam.
 fn together(islands: Vec<Polygon>, later: f64, sheet: &Sheet<'_>) -> Vec<Polygon> {
     if !sheet.goes_on() {
         return islands;
@@ -50,7 +50,7 @@ fn together(islands: Vec<Polygon>, later: f64, sheet: &Sheet<'_>) -> Vec<Polygon
     groups.values().flat_map(of_group).collect()
 }
 
-/// Islands as one that begins within the first turn, each some turns further on.
+/// Unites islands, each moved on by its number of turns, into one that begins within the first turn.
 fn united<'a>(members: impl Iterator<Item = (&'a Polygon, i32)> + Clone, sheet: &Sheet<'_>) -> Vec<Polygon> {
     let first = members.clone().map(|(_, turn)| turn).min().unwrap_or(0);
     let further = |(island, turn): (&Polygon, i32)| {
@@ -60,7 +60,7 @@ fn united<'a>(members: impl Iterator<Item = (&'a Polygon, i32)> + Clone, sheet: 
     members.map(further).fold(Region::default(), |all, part| all.union(&part)).simplified(OVERLAP).into_polygons()
 }
 
-/// A region that goes all around, cut open at another angle: what lies before it comes a turn later.
+/// A region that goes all the way around, cut open at another angle: the part before that angle moves to the next turn.
 fn cut_later(region: &Region, later: f64, sheet: &Sheet<'_>) -> Vec<Polygon> {
     let Some(reach) = region.bounds().map(|bounds| bounds.min.length().max(bounds.max.length()) * 2.0) else {
         return Vec::new();
@@ -73,7 +73,7 @@ fn cut_later(region: &Region, later: f64, sheet: &Sheet<'_>) -> Vec<Polygon> {
     pieces.fold(Region::default(), |all, piece| all.union(&piece)).simplified(OVERLAP).into_polygons()
 }
 
-/// The stretches of the seam at the end (side 1) or the beginning (-1) of a turn along which an island lies, from and to, mm.
+/// The intervals of the seam, mm, along which an island lies, at the end (side 1) or the beginning (-1) of a turn.
 fn on_seam(island: &Polygon, side: f64, sheet: &Sheet<'_>) -> Vec<[f64; 2]> {
     let place = |p: DVec2| sheet.on_seam(p, side * PI, ON_SEAM);
     let edge = |(a, b): (DVec2, DVec2)| Some([place(a)?, place(b)?]);
@@ -81,7 +81,7 @@ fn on_seam(island: &Polygon, side: f64, sheet: &Sheet<'_>) -> Vec<[f64; 2]> {
     stretches.map(|[a, b]| [a.min(b), a.max(b)]).filter(|[a, b]| b - a > SHARED).collect()
 }
 
-/// Pairs of islands of which the second continues the first, a turn further on.
+/// Pairs of islands where the second continues the first into the next turn.
 fn meeting(ends: &[[Vec<[f64; 2]>; 2]]) -> Vec<[usize; 2]> {
     let share =
         |a: &[[f64; 2]], b: &[[f64; 2]]| a.iter().any(|a| b.iter().any(|b| a[1].min(b[1]) - a[0].max(b[0]) > SHARED));
@@ -89,7 +89,7 @@ fn meeting(ends: &[[Vec<[f64; 2]>; 2]]) -> Vec<[usize; 2]> {
     pairs.filter(|[a, b]| share(&ends[*a][0], &ends[*b][1])).collect()
 }
 
-/// For each island its group and its turn in it; no turn in groups that go all around.
+/// For each island its group and its turn within it; no turn in groups that go all the way around.
 fn turns(count: usize, meeting: &[[usize; 2]]) -> Vec<(usize, Option<i32>)> {
     let mut turns: Vec<Option<(usize, i32)>> = vec![None; count];
     let mut around = vec![false; count];

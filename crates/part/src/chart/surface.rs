@@ -1,15 +1,15 @@
-//! Layers that follow a surface: cladding, hard-facing, layers over a mould. The surface is its heights along one direction, on a
-//! square grid, joined smoothly by cubic splines.
+//! Layers that follow a surface: cladding, hard-facing, layers over a mould. The surface is given by its heights along
+//! one direction on a square grid, joined smoothly by cubic splines.
 //!
-//! (u, v) are the place seen along that direction, h the height over the surface along it. So a millimetre of u × v × h is a cubic
-//! millimetre, and all layers are alike; where the surface slopes, beads lie farther apart than planned, by as much as the slope is
-//! longer than its shadow ([`Surface::stretch`]).
+//! (u, v) is the position seen along that direction, h the height above the surface along it. So one mm of u × v × h is
+//! one mm³, and all layers are alike; where the surface slopes, beads lie farther apart than planned, by the ratio of
+//! the length on the slope to its projection ([`Surface::stretch`]).
 
 use super::At;
 use crate::model::Mesh;
 use glam::{DQuat, DVec2, DVec3};
 
-/// A surface over which layers lie.
+/// A surface that layers follow.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     up: DVec3,
@@ -17,11 +17,11 @@ pub struct Surface {
     step: f64,
     columns: usize,
     heights: Vec<f64>,
-    /// Those of the splines.
+    /// Control points of the splines, mm.
     control: Vec<f64>,
 }
 
-/// Why heights give no surface.
+/// Why heights do not define a surface.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SurfaceError {
@@ -36,19 +36,19 @@ pub enum SurfaceError {
         /// How many a row has.
         columns: usize,
     },
-    /// A mesh of which nothing is seen along the direction.
+    /// A mesh of which no face is visible along the direction.
     #[error("nothing of the model is seen along the direction of the surface")]
     Nothing,
 }
 
-/// Heights of a row, and rows.
+/// Fewest heights per row, and fewest rows.
 const LEAST: usize = 4;
-/// Heights in all.
+/// Most heights in all.
 const MOST: usize = 250_000;
 
 impl Surface {
-    /// The surface over which heights (mm) along `up` lie, row by row: `step` (mm) apart, the first at `from` (mm), in the
-    /// coordinates that [`Plane`](super::Plane)s square to `up` through the origin have.
+    /// The surface through heights (mm) along `up`, row by row: `step` (mm) apart, the first at `from` (mm), in the
+    /// coordinates of the [`Plane`](super::Plane) square to `up` through the origin.
     ///
     /// ```
     /// use bead_part::chart::Surface;
@@ -68,7 +68,7 @@ impl Surface {
         if columns < LEAST || rows < LEAST || rows * columns != heights.len() || heights.len() > MOST {
             return Err(SurfaceError::Grid { heights: heights.len(), columns });
         }
-        // Splines through the heights, but for the fourth power of the step.
+        // Control points of splines through the heights, up to the fourth power of the step.
         let bent = |k: usize, at: usize, count: usize, by: usize| {
             if at == 0 || at + 1 == count { 0.0 } else { heights[k - by] - 2.0 * heights[k] + heights[k + by] }
         };
@@ -78,8 +78,8 @@ impl Surface {
         Ok(Self { up, from, step, columns, heights, control })
     }
 
-    /// The surface of a mesh as it is seen along `up`, from its topmost side, on a grid of `step` (mm). Beside the mesh and over its
-    /// openings the surface goes on straight for a few steps, then level.
+    /// The topmost surface of a mesh seen along `up`, on a grid of `step` (mm). Beside the mesh and over its openings
+    /// the surface continues straight for a few steps, then level.
     ///
     /// # Errors
     /// [`SurfaceError`].
@@ -87,7 +87,7 @@ impl Surface {
         Self::of_faces(mesh, up, step, |_| true)
     }
 
-    /// The same of those places of the grid that are kept; beside them the surface goes on as beside the mesh.
+    /// The same, from only those grid points that are kept; beside them the surface continues as beside the mesh.
     ///
     /// # Errors
     /// [`SurfaceError`].
@@ -122,7 +122,7 @@ impl Surface {
         Self::new(up, from, step, columns, heights)
     }
 
-    /// The same surface with heights as they are written in files: of four places, mm.
+    /// The same surface with heights rounded to four decimals of a mm, as in files.
     pub fn rounded(&self) -> Self {
         const PLACES: f64 = 1e4;
         let heights = self.heights.iter().map(|height| (height * PLACES).round() / PLACES + 0.0).collect();
@@ -134,17 +134,17 @@ impl Surface {
         self.up
     }
 
-    /// Where the first height lies, mm.
+    /// Position of the first height, mm.
     pub fn from(&self) -> DVec2 {
         self.from
     }
 
-    /// Distance of heights, mm.
+    /// Spacing of the heights, mm.
     pub fn step(&self) -> f64 {
         self.step
     }
 
-    /// Heights of a row.
+    /// Number of heights per row.
     pub fn columns(&self) -> usize {
         self.columns
     }
@@ -154,17 +154,17 @@ impl Surface {
         &self.heights
     }
 
-    /// The control points of the cubic splines, as the heights lie, mm.
+    /// The control points of the cubic splines, row by row like the heights, mm.
     pub fn control(&self) -> &[f64] {
         &self.control
     }
 
-    /// How much longer the steepest way on the surface is at a place than seen along `up`.
+    /// The length of the steepest path on the surface at a point, over its length seen along `up`.
     pub fn stretch(&self, p: DVec2) -> f64 {
         (1.0 + self.at_place(p).1.length_squared()).sqrt()
     }
 
-    /// The same surface, lower by some mm.
+    /// The same surface, `by` mm lower.
     pub(super) fn lowered(&self, by: f64) -> Self {
         let lower = |heights: &[f64]| heights.iter().map(|height| height - by).collect();
         Self { heights: lower(&self.heights), control: lower(&self.control), ..*self }
@@ -184,7 +184,7 @@ impl Surface {
         At { place, along: [turn * along, turn * normal.cross(along)], normal: turn * normal }
     }
 
-    /// Height (mm) and slope of the surface at a place; beyond the grid it goes on straight.
+    /// Height (mm) and slope of the surface at a point; beyond the grid it continues straight.
     fn at_place(&self, p: DVec2) -> (f64, DVec2) {
         let rows = self.heights.len() / self.columns;
         let last = DVec2::new((self.columns - 1) as f64, (rows - 1) as f64);
@@ -204,7 +204,7 @@ impl Surface {
         (height + slope.dot((place - on_grid) * self.step), slope)
     }
 
-    /// Beyond the edge, control points go on straight.
+    /// Beyond the edge, control points are extrapolated linearly.
     fn control_at(&self, column: isize, row: isize) -> f64 {
         let rows = (self.control.len() / self.columns) as isize;
         let columns = self.columns as isize;
@@ -243,7 +243,7 @@ impl Basis {
     }
 }
 
-/// Raises the heights that a triangle covers.
+/// Raises the heights of the grid points that a triangle covers to the triangle.
 fn raise(tops: &mut [Option<f64>], columns: usize, from: DVec2, step: f64, [a, b, c]: [DVec3; 3]) {
     let [p, q, r] = [a, b, c].map(|corner| (corner.truncate() - from) / step);
     let area = (q - p).perp_dot(r - p);
@@ -269,12 +269,13 @@ fn raise(tops: &mut [Option<f64>], columns: usize, from: DVec2, step: f64, [a, b
     }
 }
 
-/// Places this part of a triangle, or of a step, outside of it lie on its edge.
+/// Points outside a triangle by less than this fraction count as on its edge.
 const EDGE: f64 = 1e-9;
-/// A triangle whose shadow has less than this part of the area of a square is seen edge-on: rounding would decide how high it is.
+/// A triangle whose projection is smaller than this fraction of a grid square is seen edge-on: rounding would decide
+/// its height.
 const UPRIGHT: f64 = 1e-9;
 
-/// Heights everywhere: where there are none, the surface goes on straight for a few steps, then level.
+/// Fills in missing heights: the surface continues straight for a few steps, then level.
 fn spread(mut tops: Vec<Option<f64>>, columns: usize) -> Option<Vec<f64>> {
     tops.iter().any(Option::is_some).then_some(())?;
     let mut straight = STRAIGHT;
@@ -298,5 +299,5 @@ fn spread(mut tops: Vec<Option<f64>>, columns: usize) -> Option<Vec<f64>> {
     tops.into_iter().collect()
 }
 
-/// Steps for which a surface goes on straight beside its mesh.
+/// Steps for which a surface continues straight beside its mesh.
 const STRAIGHT: i32 = 3;

@@ -15,10 +15,10 @@ pub enum ChartError {
         "\"{0}\" is no kind of layers: write plane, cylinder, cone, guide or surface, such as cylinder:axis=z,radius=36"
     )]
     Kind(String),
-    /// No such key.
+    /// No such key for this chart.
     #[error("a {kind} has no \"{key}\": it takes {known}")]
     Key {
-        /// The chart.
+        /// The kind of chart.
         kind: &'static str,
         /// What was written.
         key: String,
@@ -28,7 +28,7 @@ pub enum ChartError {
     /// A key without a value.
     #[error("\"{0}\" is no KEY=VALUE, such as axis=z")]
     Pair(String),
-    /// A value that cannot be read, or that makes no sense.
+    /// A value that cannot be read or makes no sense.
     #[error("{key}={value}: {expected}")]
     Value {
         /// The key.
@@ -38,23 +38,23 @@ pub enum ChartError {
         /// What may be written.
         expected: &'static str,
     },
-    /// Something else than a plane where half of the space is meant.
+    /// Something other than a plane where a half-space is meant.
     #[error("\"{0}\" is no plane: write up=X/Y/Z,through=X/Y/Z; what lies above it is kept")]
     Half(String),
-    /// Points and radii that give no guide.
+    /// Points and radii that do not define a guide.
     #[error(transparent)]
     Guide(#[from] GuideError),
-    /// Heights that give no surface.
+    /// Heights that do not define a surface.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
-    /// A value that must be given.
+    /// A required value is missing.
     #[error("a {kind} needs {key}: {why}")]
     Missing {
         /// The chart.
         kind: &'static str,
         /// The key.
         key: &'static str,
-        /// What it says.
+        /// What the value means.
         why: &'static str,
     },
 }
@@ -152,7 +152,7 @@ impl FromStr for Plane {
 
 /// Separates the values of a list.
 const BETWEEN: &str = ":";
-/// Where layers are cut open if nothing is written, °: the angle 0 is that of x.
+/// Default angle at which layers are cut open, °: angle 0 is then along x.
 const SEAM: f64 = 180.0;
 
 impl fmt::Display for Chart {
@@ -192,7 +192,7 @@ impl fmt::Display for Chart {
     }
 }
 
-/// A vector as it is read.
+/// A vector as text.
 fn three_of(v: DVec3) -> String {
     format!("{}/{}/{}", v.x, v.y, v.z)
 }
@@ -264,7 +264,7 @@ impl<'a> Given<'a> {
         ChartError::Value { key: key.to_owned(), value: value.to_owned(), expected }
     }
 
-    /// A unit vector; that along z where nothing is written.
+    /// A unit vector; along z if not given.
     fn direction(&self, key: &str) -> Result<DVec3, ChartError> {
         let Some(value) = self.value(key) else { return Ok(DVec3::Z) };
         let (sign, name) = value.strip_prefix('-').map_or((1.0, value), |name| (-1.0, name));
@@ -278,13 +278,13 @@ impl<'a> Given<'a> {
         axis.ok_or_else(|| Self::wrong(key, value, "write x, y, z, -x, -y, -z, or three numbers such as 1/0/0.5"))
     }
 
-    /// A point, mm; the origin where nothing is written.
+    /// A point, mm; the origin if not given.
     fn place(&self, key: &str) -> Result<DVec3, ChartError> {
         let Some(value) = self.value(key) else { return Ok(DVec3::ZERO) };
         point(value).ok_or_else(|| Self::wrong(key, value, "write x/y/z in mm, such as 0/0/25"))
     }
 
-    /// Points one after another, mm.
+    /// A list of points, mm.
     fn places(&self, key: &'static str) -> Result<Vec<DVec3>, ChartError> {
         let why = "where the curve begins, its corners, and where it ends, mm";
         let value = self.value(key).ok_or(ChartError::Missing { kind: self.kind, key, why })?;
@@ -298,7 +298,7 @@ impl<'a> Given<'a> {
         radius(value).ok_or_else(|| Self::wrong("radius", value, "write mm, 0.1 to 20000"))
     }
 
-    /// Those of a guide's bends, mm.
+    /// The bend radii of a guide, mm.
     fn radii(&self) -> Result<Vec<f64>, ChartError> {
         let Some(value) = self.value("radius") else { return Ok(Vec::new()) };
         let radii = value.split(BETWEEN).map(radius).collect::<Option<_>>();
@@ -313,7 +313,7 @@ impl<'a> Given<'a> {
         }
     }
 
-    /// °
+    /// An angle, °, within the range.
     fn angle(&self, key: &str, range: std::ops::RangeInclusive<f64>) -> Result<Option<f64>, ChartError> {
         let Some(value) = self.value(key) else { return Ok(None) };
         let degrees = value.parse().ok().filter(|degrees: &f64| range.contains(degrees));
@@ -322,12 +322,12 @@ impl<'a> Given<'a> {
     }
 }
 
-/// mm
+/// A radius, mm.
 fn radius(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|radius| (0.1..=20_000.0).contains(radius))
 }
 
-/// A unit vector stays as it is, so that what was written can be read again.
+/// Normalises a vector; a unit vector is unchanged, so that written text reads back the same.
 fn unit(vector: DVec3) -> Option<DVec3> {
     if vector.is_normalized() { Some(vector) } else { vector.try_normalize() }
 }

@@ -1,8 +1,8 @@
-//! A mesh in the coordinates of a chart: its triangles are divided until their edges are straight there, too, what lies below
-//! the surface on which the build begins is cut off, and a mesh around an axis is cut open at the seam.
+//! A mesh in the coordinates of a chart: its triangles are divided until their edges are straight in the chart as well,
+//! what lies below the surface on which the build begins is cut off, and a mesh around an axis is cut open at the seam.
 //!
-//! Between a part around an axis and its unrolled mesh lies one that has angles as lengths: in it, the seam and the first layer's
-//! underside are planes.
+//! A part around an axis and its unrolled mesh are linked by an intermediate mesh with angles as lengths, in which the
+//! seam and the underside of the first layer are planes.
 
 use super::polar::{Around, Polar, near};
 use super::{Chart, Guide, Lie, Surface};
@@ -12,8 +12,8 @@ use glam::DVec3;
 use std::collections::{BTreeMap, HashMap};
 use std::f64::consts::{PI, TAU};
 
-/// A mesh in the coordinates of a chart, whose edges lie within `tolerance` (mm) of the true ones. Where nothing lies above the
-/// chart's first layer, nothing is left.
+/// A mesh in the coordinates of a chart, with edges within `tolerance` (mm) of the true ones. Empty if nothing lies
+/// above the start of the chart's first layer.
 ///
 /// ```
 /// use bead_part::{chart::{Chart, warp}, example, task::Task};
@@ -38,8 +38,8 @@ pub fn warped(chart: &Chart, mesh: &Mesh, tolerance: f64, task: &Task) -> Result
     }
 }
 
-/// The reverse over a surface: a mesh that is given in its coordinates, in space, divided until its edges lie within `tolerance`
-/// (mm) of the true ones.
+/// The inverse for a surface: a mesh given in its coordinates, mapped to space and divided until its edges lie within
+/// `tolerance` (mm) of the true ones.
 ///
 /// # Errors
 /// [`WarpError::Cancelled`].
@@ -66,7 +66,7 @@ pub(crate) fn divided(mesh: &Mesh, longest: f64, task: &Task) -> Result<Mesh, Wa
     Ok(Mesh { vertices, triangles, ..Mesh::default() })
 }
 
-/// Edges shorter than this part of the grid are not divided further: at a kink they never become straight.
+/// Edges shorter than this fraction of the grid are not divided further: at a kink they never become straight.
 const SHORT_BENT: f64 = 0.1;
 
 /// # Errors
@@ -78,13 +78,13 @@ pub(crate) fn check_slope(surface: &Surface, mut coordinates: impl Iterator<Item
     }
 }
 
-/// Why a mesh has no place in a chart.
+/// Why a mesh cannot be mapped to a chart.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum WarpError {
     /// Stopped by the caller.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Metal on both sides of a place that lies as near to one stretch of a guide as to another.
+    /// Metal on both sides of a place that is equally near to two sections of a guide.
     #[error(
         "near x {:.1} y {:.1} z {:.1} mm the part lies as near to one stretch of the guide as to another, or in the centre of a bend, so \
          it is not clear which layers it belongs to. Bend the guide less, or divide the part.",
@@ -98,9 +98,9 @@ pub enum WarpError {
         .place.x, .place.y, .place.z, 100.0 * (.stretch - 1.0), 100.0 * (STEEPEST - 1.0)
     )]
     Steep {
-        /// A place, mm.
+        /// Where, mm.
         place: DVec3,
-        /// How much farther apart beads would lie there.
+        /// The factor by which beads would lie farther apart there.
         stretch: f64,
     },
 }
@@ -134,9 +134,9 @@ fn over(surface: &Surface, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<M
     Ok(unrolled)
 }
 
-/// Edges shorter than this part of the grid of a surface are straight over it.
+/// Edges shorter than this fraction of a surface's grid count as straight over it.
 const SHORT_OVER: f64 = 0.02;
-/// Slopes on which beads would lie farther apart than by this factor are refused.
+/// Largest factor by which slopes may spread beads apart; steeper ones are refused.
 pub(crate) const STEEPEST: f64 = 1.05;
 
 fn around(polar: &dyn Polar, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
@@ -144,7 +144,7 @@ fn around(polar: &dyn Polar, mesh: &Mesh, tolerance: f64, task: &Task) -> Result
     let mut cut = Cut::opened(&divided, polar);
     let (low, high) = cut.bounds();
     let middle = low.midpoint(high);
-    // Points to which no edge of the part leads.
+    // Tips of the closing faces, to which no edge of the part leads.
     let under = middle.with_z(low.z.min(0.0) - APEX * SPREAD);
     cut.clip(Face { axis: 0, up: true, at: -PI * SPREAD }, under);
     cut.clip(Face { axis: 0, up: false, at: PI * SPREAD }, under);
@@ -154,19 +154,19 @@ fn around(polar: &dyn Polar, mesh: &Mesh, tolerance: f64, task: &Task) -> Result
     Ok(Mesh::from_triangles(cut.vertices, cut.triangles).0)
 }
 
-/// Angles as lengths, mm per rad: large enough that vertices close together stay apart.
+/// Scale for angles as lengths, mm per rad: large enough that neighbouring vertices stay distinct.
 const SPREAD: f64 = 100.0;
-/// How far out the tips of closing faces lie, in rad of [`SPREAD`].
+/// How far out the tips of closing faces lie, in rad (scaled by [`SPREAD`]).
 const APEX: f64 = 0.734_209;
-/// Heights this small are those of a part that begins on the first layer's underside, mm.
+/// Heights smaller than this count as 0, where a part begins on the underside of the first layer, mm.
 const ON_IT: f64 = 1e-6;
 
-/// A height, mm; those of a part that begins on the first layer's underside are 0.
+/// A height, mm, set to 0 where the part begins on the underside of the first layer.
 fn on_it(height: f64) -> f64 {
     if height.abs() < ON_IT { 0.0 } else { height }
 }
 
-/// What lies above a height, mm; the heights stay as they are.
+/// What lies above a height, mm; heights are unchanged.
 fn above(mesh: Mesh, z: f64) -> Mesh {
     if mesh.bounds().0.z >= z {
         return mesh;
@@ -202,13 +202,14 @@ struct Clip<'a> {
     vertices: &'a mut Vec<DVec3>,
     /// The vertex on each edge that the plane cuts, by the edge's ends.
     crossings: HashMap<[u32; 2], u32>,
-    /// How often each edge of what closes the cut runs from its lower end to its higher one, less how often back: where two faces
-    /// leave along one edge, nothing is open.
+    /// Net direction count of each edge of the closing faces: how often it runs from its lower end to its higher one,
+    /// less how often back. Where two faces leave along the same edge, nothing is open.
     rim: BTreeMap<[u32; 2], i32>,
 }
 
 impl Clip<'_> {
-    /// What of a triangle is kept. What closes the cut takes the place of one that lies in the plane.
+    /// The part of a triangle that is kept. A triangle in the plane is dropped, and its edges become rim, since the
+    /// closing face replaces it.
     fn kept(&mut self, triangle: &[u32; 3]) -> Vec<[u32; 3]> {
         let edges = [0, 1, 2].map(|k| [triangle[k], triangle[(k + 1) % 3]]);
         if triangle.iter().all(|corner| self.vertices[*corner as usize][self.face.axis] == self.face.at) {
@@ -251,7 +252,7 @@ impl Clip<'_> {
         })
     }
 
-    /// Takes note of an edge of what closes the cut.
+    /// Records an edge of the closing face.
     fn open(&mut self, [from, to]: [u32; 2]) {
         *self.rim.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
     }
@@ -269,9 +270,9 @@ impl Cut {
         self.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
     }
 
-    /// Keeps one side of a plane. Each edge of the cut becomes a triangle with the tip `apex`, moved onto the plane: where the
-    /// edges form a ring, its triangles close it, though they may lie on one another, so that a slice has edges there and back
-    /// again, but its area is right.
+    /// Keeps one side of a plane. Each edge of the cut becomes a triangle with the tip `apex`, moved onto the plane.
+    /// Where the edges form a ring, these triangles close it; they may overlap, so a slice may have edges there and
+    /// back, but its area is right.
     fn clip(&mut self, face: Face, mut apex: DVec3) {
         apex[face.axis] = face.at;
         if self.vertices.iter().all(|p| face.keeps(*p)) {
@@ -303,8 +304,8 @@ impl Cut {
         self.vertices = used;
     }
 
-    /// Triangles with angle × [`SPREAD`], place along the straight lines and height as coordinates; those that cross the seam are
-    /// there on both sides.
+    /// Triangles with angle × [`SPREAD`], position along the straight lines and height as coordinates; those that cross
+    /// the seam appear on both sides.
     fn opened(mesh: &Divided, polar: &dyn Polar) -> Self {
         let snapped = |around: Around| Around { height: on_it(around.height), ..around };
         let around: Vec<Around> = mesh.vertices.iter().map(|p| snapped(polar.around(*p))).collect();
@@ -334,14 +335,14 @@ impl Cut {
     }
 }
 
-/// A mesh whose edges are straight in a chart, too.
+/// A mesh whose edges are straight in a chart as well.
 struct Divided {
     vertices: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,
 }
 
 impl Divided {
-    /// Edges are cut where `cut` says, as long as they are bent.
+    /// Divides edges at the points that `cut` returns, until it returns none.
     fn of(
         mesh: &Mesh,
         cut: impl Fn(DVec3, DVec3) -> Result<Option<DVec3>, WarpError>,
@@ -381,12 +382,11 @@ impl Divided {
     }
 }
 
-/// Whether an edge bends in a chart by more than `tolerance` (mm). One that lies wholly below the first layer is of no
-/// concern.
+/// Whether an edge bends in a chart by more than `tolerance` (mm). Edges wholly below the first layer do not matter.
 fn is_bent(a: DVec3, b: DVec3, polar: &dyn Polar, tolerance: f64) -> bool {
     let length = a.distance(b);
     let [first, last] = [a, b].map(|p| polar.around(p));
-    // Heights change by no more than the distance.
+    // Heights change by no more than the length of the edge.
     if length < tolerance || first.height + last.height + length < -4.0 * ON_IT {
         return false;
     }
@@ -403,8 +403,8 @@ fn is_bent(a: DVec3, b: DVec3, polar: &dyn Polar, tolerance: f64) -> bool {
     })
 }
 
-/// Where an edge is cut that bends along a guide by more than `tolerance` (mm): first where lines and arcs meet, since it has a
-/// corner there.
+/// Where to divide an edge that bends along a guide by more than `tolerance` (mm): first where spans of the guide meet,
+/// because the edge has a corner there.
 fn cut_along(a: DVec3, b: DVec3, guide: &Guide, tolerance: f64) -> Result<Option<DVec3>, WarpError> {
     let ([from, to], length) = ([a, b].map(|p| guide.coordinates(p)), a.distance(b));
     if length < tolerance || from.z.max(to.z) < 0.0 {
@@ -420,12 +420,13 @@ fn cut_along(a: DVec3, b: DVec3, guide: &Guide, tolerance: f64) -> Result<Option
     Ok([0.25, 0.5, 0.75].into_iter().any(|part| off(part) > tolerance).then(|| a.midpoint(b)))
 }
 
-/// Edges shorter than this are looked at, mm:
+/// Edges shorter than this are checked, mm:
 const SHORT: f64 = 1.0;
-/// one that the chart makes longer by this factor leads from one stretch of a guide to another, or past the centre of a bend.
+/// one that the chart lengthens by more than this factor jumps to another section of the guide, or past the centre of a
+/// bend.
 const JUMP: f64 = 20.0;
 
-/// The pieces of a triangle some of whose edges have a middle.
+/// The pieces of a triangle of which some edges are divided.
 fn split([a, b, c]: [u32; 3], middle: [Option<u32>; 3], vertices: &[DVec3], pieces: &mut Vec<[u32; 3]>) {
     match middle {
         [None, None, None] => pieces.push([a, b, c]),
@@ -433,7 +434,7 @@ fn split([a, b, c]: [u32; 3], middle: [Option<u32>; 3], vertices: &[DVec3], piec
         [Some(ab), None, None] => pieces.extend([[a, ab, c], [ab, b, c]]),
         [Some(ab), Some(bc), None] => {
             pieces.push([ab, b, bc]);
-            // The shorter diagonal makes the rounder triangles.
+            // The shorter diagonal gives better-shaped triangles.
             let length = |from: u32, to: u32| vertices[from as usize].distance_squared(vertices[to as usize]);
             let shorter = length(a, bc) < length(ab, c);
             pieces.extend(if shorter { [[a, ab, bc], [a, bc, c]] } else { [[a, ab, c], [ab, bc, c]] });

@@ -5,20 +5,20 @@
 
 use glam::DVec3;
 
-/// Unknowns are numbered so that two that share an equation are at most `band` apart, except for those of the border.
+/// Unknowns are numbered so that two in the same equation are at most `band` apart, except those of the border.
 pub(super) struct Banded {
     band: usize,
     core: usize,
     /// Row i: the elements (i, i − band) to (i, i).
     rows: Vec<Vec<f64>>,
-    /// Column c of the border: its elements with the core.
+    /// Column c of the border: its elements coupling with the core.
     sides: Vec<Vec<f64>>,
     /// The border with itself.
     corner: Vec<Vec<f64>>,
 }
 
 impl Banded {
-    /// A system of zeros whose last `border` unknowns may meet all others.
+    /// A system of zeros whose last `border` unknowns may couple with all others.
     pub(super) fn new(unknowns: usize, band: usize, border: usize) -> Self {
         let core = unknowns - border;
         let rows = vec![vec![0.0; band + 1]; core];
@@ -40,7 +40,7 @@ impl Banded {
         }
     }
 
-    /// Factors the system; none when it is singular.
+    /// Factors the system; `None` when it is singular.
     pub(super) fn factored(mut self) -> Option<Factored> {
         for i in 0..self.core {
             let first = i.saturating_sub(self.band);
@@ -87,7 +87,7 @@ impl Banded {
 /// A system ready for right-hand sides.
 pub(super) struct Factored {
     system: Banded,
-    /// The border's columns solved with the core.
+    /// The border's columns, solved with the core.
     solved: Vec<Vec<f64>>,
 }
 
@@ -114,7 +114,7 @@ trait Element: Copy + std::ops::Sub<Output = Self> + std::ops::Mul<f64, Output =
 impl Element for f64 {}
 impl Element for DVec3 {}
 
-/// Square root of what is left of a diagonal element; `None` when only rounding error is left.
+/// Square root of the remainder of a diagonal element; `None` when only rounding error remains.
 fn root(rest: f64, whole: f64) -> Option<f64> {
     (rest > 1e-14 * whole).then(|| rest.sqrt())
 }

@@ -7,10 +7,10 @@ use glam::DVec3;
 /// Samples in each knot span, per degree.
 const SAMPLES: usize = 8;
 
-/// Newton's method starts on at most this many chords: the nearest of those nearer than both their neighbours.
+/// Newton's method starts from at most this many chords: the nearest among those nearer than both neighbours.
 const FOLLOWED: usize = 8;
 
-/// Distances that differ by this share of the coordinates are equal.
+/// Distances that differ by less than this fraction of the coordinates are equal.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A point of a curve.
@@ -70,18 +70,18 @@ impl Nurbs {
         breaks.windows(2).flat_map(inside).chain([last]).collect()
     }
 
-    /// Descends from the middle one of three parameters to the least distance, never past the outer two.
+    /// Minimises the distance, starting from the middle of three parameters and never passing the outer two.
     fn descend(&self, target: DVec3, (low, start, high): (f64, f64, f64)) -> Closest {
         let (mut low, mut high, mut u) = (low, high, start);
         let mut best = self.closest_at(target, start);
         for _ in 0..60 {
             let [point, velocity, acceleration] = self.derivatives(u);
             let offset = point - target;
-            // Where the distance is flat, rounding hides that the later point is the better one.
+            // Where the distance is flat, rounding hides that the later point is better.
             if offset.length() <= best.distance + ROUNDING * (point.length() + target.length()) {
                 best = Closest { parameter: u, point, distance: offset.length() };
             }
-            // The distance falls where this is negative.
+            // The distance decreases where this is negative.
             let slope = offset.dot(velocity);
             if slope > 0.0 {
                 high = u

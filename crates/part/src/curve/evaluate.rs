@@ -6,18 +6,18 @@
 use super::{MAX_DEGREE, Nurbs};
 use glam::{DVec3, DVec4};
 
-/// The control points that matter in one span; those beyond the degree are not used.
+/// The control points that matter in one span; elements beyond the degree are unused.
 type Local = [DVec4; MAX_DEGREE + 1];
 
 impl Nurbs {
-    /// The point at parameter `u`, mm; outside the domain the nearer end.
+    /// The point at parameter `u`, mm; outside the domain, the nearer end.
     pub fn point(&self, u: f64) -> DVec3 {
         let (u, span) = self.place(u);
         let value = self.de_boor(self.local(span), self.degree, span, u);
         value.truncate() / value.w
     }
 
-    /// First derivative with respect to the parameter, mm; at a knot that of the piece after it, at the end that of the
+    /// First derivative with respect to the parameter, mm; at a knot, of the piece after it, and at the end, of the
     /// last piece.
     pub fn derivative(&self, u: f64) -> DVec3 {
         self.derivatives(u)[1]
@@ -32,8 +32,8 @@ impl Nurbs {
         [point, velocity, acceleration]
     }
 
-    /// Unit tangent at parameter `u`; where the derivative is zero, the direction just next to it; zero for a curve
-    /// that is one point.
+    /// Unit tangent at parameter `u`; where the derivative is zero, the direction right next to it; zero if the curve
+    /// is a single point.
     pub fn tangent(&self, u: f64) -> DVec3 {
         let velocity = self.derivative(u);
         if velocity.length() > 1e-12 * self.extent() / (self.domain().1 - self.domain().0) {

@@ -1,17 +1,17 @@
 //! Cubics through points, and cubics near points with as few knots as a tolerance allows.
 //!
-//! Parameters are chord lengths, so a fitted curve runs at about 1 mm per unit. Interpolation takes the knots of
-//! C. de Boor (averages of parameters; Piegl & Tiller 9.2.1), or the parameters themselves on a closed curve. The
-//! approximation begins with few knots and halves, by number of points, every span that misses the tolerance.
+//! Parameters are chord lengths, so one unit of parameter is about 1 mm of a fitted curve. Interpolation takes the
+//! knots of C. de Boor (averages of parameters; Piegl & Tiller 9.2.1), or the parameters themselves on a closed curve.
+//! Approximation begins with few knots and halves, by number of points, every span that misses the tolerance.
 
 use super::spline_space::SplineSpace;
 use super::{CurveError, Nurbs};
 use glam::DVec3;
 
-/// Points nearer than this share of their extent are one.
+/// Points nearer than this fraction of their extent are one.
 const SAME: f64 = 1e-12;
 
-/// Spans of the first attempt on a closed curve, and the fewest points it is tried with.
+/// Number of spans in the first attempt on a closed curve, and the fewest points for which it is tried.
 const CLOSED_START: usize = 4;
 const CLOSED_POINTS: usize = 8;
 
@@ -20,13 +20,14 @@ const CLOSED_POINTS: usize = 8;
 pub struct Fit {
     /// The curve.
     pub curve: Nurbs,
-    /// The largest distance of a point from the curve at its parameter, mm; no point is farther away.
+    /// The largest distance between a point and the curve at that point's parameter, mm; no point is farther from the
+    /// curve.
     pub error: f64,
 }
 
 impl Nurbs {
-    /// The smooth cubic through `points`, mm; with `closed`, on from the last to the first with no kink (do not
-    /// repeat the first). Three points give a parabola, two a line. Points that repeat the one before count once.
+    /// The smooth cubic through `points`, mm; with `closed`, it continues from the last to the first without a kink (do
+    /// not repeat the first). Three points give a parabola, two a line. Points that repeat the one before count once.
     ///
     /// # Errors
     /// [`CurveError::TooFewToFit`] for fewer than two different points (three for a closed curve),
@@ -35,9 +36,9 @@ impl Nurbs {
         Data::new(points, closed)?.interpolated()
     }
 
-    /// A smooth cubic with few knots that passes all `points` within `error`, mm; with `closed`, on from the last to
-    /// the first with no kink. An open curve begins and ends in the first and the last point. Between points the
-    /// curve is free to be smooth: give points as densely as the shape must be kept.
+    /// A smooth cubic with few knots that passes within `error` (mm) of all `points`; with `closed`, it continues from
+    /// the last to the first without a kink. An open curve begins at the first point and ends at the last. Between
+    /// points the curve is unconstrained: give points as densely as the shape must be kept.
     ///
     /// ```
     /// use bead_part::curve::Nurbs;
@@ -108,7 +109,7 @@ impl Data {
             SplineSpace::open(degree, &self.averaged(degree))
         };
         let parameters = &self.parameters[..self.points.len()];
-        // A cubic through points always exists; only rounding, at wildly uneven distances, can hide it.
+        // A cubic through the points always exists; only rounding, at wildly uneven spacing, can make it fail.
         space.nearest(parameters, &self.points).unwrap_or_else(|| Nurbs::polyline(self.ring()))
     }
 
@@ -166,7 +167,7 @@ impl Data {
         self.points.iter().zip(&self.parameters).map(|(p, &u)| p.distance(curve.point(u))).collect()
     }
 
-    /// Halves the spans that miss the tolerance and hold enough points; returns whether there was one.
+    /// Halves the spans that miss the tolerance and hold enough points; returns whether any was halved.
     fn split(&self, breaks: &mut Vec<f64>, misses: &[f64], error: f64) -> bool {
         let before = breaks.len();
         let mut added = Vec::new();

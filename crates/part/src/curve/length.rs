@@ -18,10 +18,10 @@ const GAUSS_16: [(f64, f64); 8] = [
     (0.989_400_934_991_649_9, 0.027_152_459_411_754_1),
 ];
 
-/// Halves agree with the whole within this share of the total length.
+/// Halves must agree with the whole to this fraction of the total length.
 const AGREEMENT: f64 = 1e-11;
 
-/// A span is halved at most this many times in succession; a cusp takes about forty.
+/// Most times a span is halved in succession; a cusp takes about forty.
 const MAX_DEPTH: u32 = 44;
 
 /// A span is cut into at most this many pieces.
@@ -46,7 +46,7 @@ impl Nurbs {
         let breaks = self.breaks();
         let spans: Vec<(f64, f64, f64)> =
             breaks.windows(2).map(|w| (w[0], w[1], self.quadrature(w[0], w[1]))).collect();
-        // Speeds are differences of coordinates, so they are no better than the rounding of these.
+        // Speeds are differences of coordinates, so they are no more accurate than the coordinates' rounding.
         let rounding = 4.0 * f64::EPSILON * self.degree as f64 * self.reach();
         let tolerance = (AGREEMENT * spans.iter().map(|s| s.2).sum::<f64>()).max(rounding);
         let mut table = ArcLength { curve: self, parameters: vec![breaks[0]], lengths: vec![0.0] };

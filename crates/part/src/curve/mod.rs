@@ -1,4 +1,4 @@
-//! Curves in space: rational B-splines (NURBS), with every exact shape a wall is drawn from.
+//! Curves in space: rational B-splines (NURBS), and exact versions of the shapes that walls are drawn with.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -13,7 +13,7 @@
 //! | `spline_space` | the basis of such a cubic and its least-squares solution |
 //! | `banded` | the linear systems behind it |
 //!
-//! Lengths are in the unit of the control points, mm everywhere in Beadwright; parameters have none.
+//! Lengths are in the unit of the control points, mm everywhere in Beadwright; parameters are dimensionless.
 
 mod banded;
 mod closest;
@@ -65,7 +65,7 @@ pub enum CurveError {
     /// A value that is not a finite number.
     #[error("{what} {index} of the curve is not a finite number. Export it again.")]
     NotFinite {
-        /// `knot`, `weight`, `control point` or `point`.
+        /// What is not finite: `knot`, `weight`, `control point` or `point`.
         what: &'static str,
         /// From 1.
         index: usize,

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 /// The highest degree supported; drawing programs write at most 25.
 pub const MAX_DEGREE: usize = 25;
 
-/// Ends nearer than this share of the curve's extent are one point.
+/// Ends nearer than this fraction of the curve's extent are one point.
 const CLOSED: f64 = 1e-9;
 
-/// A rational B-spline curve: `C(u) = Σ N_i(u) w_i P_i / Σ N_i(u) w_i` (equation 1 of Li et al.).
+/// A rational B-spline curve: `C(u) = Σ N_i(u) w_i P_i / Σ N_i(u) w_i` (Li et al., eq 1).
 ///
 /// The knots may be any non-decreasing ones, clamped or not; the curve runs over [`Nurbs::domain`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -136,7 +136,7 @@ impl Nurbs {
         self.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
     }
 
-    /// Largest coordinate of the control points, mm.
+    /// Largest absolute coordinate of the control points, mm.
     pub(super) fn reach(&self) -> f64 {
         let (low, high) = self.bounds();
         low.abs().max(high.abs()).max_element()

@@ -3,7 +3,7 @@
 use super::{CurveError, Nurbs};
 use glam::DVec4;
 
-/// Ends nearer to a knot than this share of the domain are that knot.
+/// Ends nearer to a knot than this fraction of the domain are moved onto the knot.
 const SAME: f64 = 1e-12;
 
 impl Nurbs {
@@ -28,7 +28,7 @@ impl Nurbs {
         Self { degree, knots, weights: all.iter().map(|p| p.w).collect(), points }
     }
 
-    /// The piece between two parameters, clamped at both; exact.
+    /// The part of the curve between two parameters, clamped at both; exact.
     ///
     /// # Errors
     /// [`CurveError::EmptyDomain`] when nothing of the domain lies between them.
@@ -39,7 +39,7 @@ impl Nurbs {
         }
         let curve = self.with_multiple_knot(from).with_multiple_knot(to);
         let (degree, knots) = (self.degree, &curve.knots);
-        // The last knot at the start and the first at the end: the piece lies between them.
+        // From the last knot at the start to the first at the end: the piece lies between them.
         let first = knots.partition_point(|&t| t <= from) - 1;
         let last = knots.partition_point(|&t| t < to);
         let (low, high) = (first - degree, last);
@@ -62,7 +62,7 @@ impl Nurbs {
         curve
     }
 
-    /// `u` clamped to the domain and moved onto a knot that is almost equal.
+    /// `u` clamped to the domain and moved onto an almost equal knot.
     fn near_knot(&self, u: f64) -> f64 {
         let (start, end) = self.domain();
         let u = u.clamp(start, end);

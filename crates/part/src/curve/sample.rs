@@ -3,21 +3,22 @@
 use super::Nurbs;
 use glam::DVec3;
 
-/// Shares of an interval at which its chord is compared with the curve; not symmetric, so that a wave that crosses
-/// the chord in the middle is seen.
+/// Fractions of an interval at which its chord is compared with the curve; not symmetric, so that a wave that crosses
+/// the chord in the middle is noticed.
 const PROBES: [f64; 5] = [0.13, 0.31, 0.5, 0.69, 0.87];
 
-/// Chords are made a little tighter than asked for, to allow for the curve between the probes.
+/// Chords are made a little tighter than asked for, as a margin for the curve between the probes.
 const SAFETY: f64 = 0.9;
 
-/// A piece is halved at most this often.
+/// A piece is halved at most this many times.
 const MAX_DEPTH: u32 = 14;
 
 /// Largest number of pieces of equal length.
 const MAX_PIECES: f64 = 1e7;
 
 impl Nurbs {
-    /// Parameters between which the curve leaves its chords by at most `error`, mm; knots and ends are among them.
+    /// Parameters between which the curve departs from its chords by at most `error`, mm; knots and ends are among
+    /// them.
     ///
     /// Every knot span is first cut into as many pieces as the degree; then every chord is compared with the curve at
     /// five places. An `error` below 1e-9 of the curve's extent, or below the rounding of its coordinates, is raised to
@@ -51,7 +52,7 @@ impl Nurbs {
         }
     }
 
-    /// Points whose chords leave the curve by at most `error`, mm; both ends are among them.
+    /// Points whose chords depart from the curve by at most `error`, mm; both ends are among them.
     pub fn points_by_chord(&self, error: f64) -> Vec<DVec3> {
         self.parameters_by_chord(error).into_iter().map(|u| self.point(u)).collect()
     }
@@ -64,7 +65,7 @@ impl Nurbs {
     }
 }
 
-/// The nearest point of the segment from `a` to `b`: its fraction along the segment, and its distance, mm.
+/// The nearest point on the segment from `a` to `b`: its fraction along the segment, and its distance, mm.
 pub(super) fn nearest_on_segment(p: DVec3, a: DVec3, b: DVec3) -> (f64, f64) {
     let along = b - a;
     let square = along.length_squared();

@@ -25,8 +25,9 @@ impl Nurbs {
     }
 
     /// The arc `centre + u cos θ + v sin θ` for θ from `start` over `sweep` (rad, at most one turn; negative runs
-    /// backwards), as a rational quadratic. With `u` and `v` of equal length and at right angles it is a circle's,
-    /// otherwise an ellipse's. The domain is 0 to |sweep|, and joints lie at their true angle.
+    /// backwards), as a rational quadratic. With `u` and `v` of equal length and at right angles it is circular,
+    /// otherwise elliptical. The domain is 0 to |sweep|; where its pieces join, the parameter is the angle from the
+    /// start.
     ///
     /// # Errors
     /// [`CurveError`] when a value is not finite or `sweep` is 0.

@@ -7,12 +7,11 @@ use glam::DVec3;
 /// The highest degree of a fitted curve.
 const CUBIC: usize = 3;
 
-/// Splines up to cubics over the knots; those of an open space are clamped, those of a closed one run on smoothly
-/// over the seam.
+/// Splines up to cubics over the knots; an open space is clamped, a closed one is smooth across the seam.
 pub(super) struct SplineSpace {
     degree: usize,
     knots: Vec<f64>,
-    /// Control points that can be chosen; a closed curve repeats the first of them at its end.
+    /// Number of free control points; a closed curve repeats the first of them at its end.
     unknowns: usize,
     is_closed: bool,
 }
@@ -21,7 +20,7 @@ pub(super) struct SplineSpace {
 type Row = (usize, [f64; CUBIC + 1]);
 
 impl SplineSpace {
-    /// Clamped at both ends of `breaks`, which increase.
+    /// Clamped at both ends of `breaks`, which must increase.
     pub(super) fn open(degree: usize, breaks: &[f64]) -> Self {
         let (first, last) = (breaks[0], breaks[breaks.len() - 1]);
         let end = |value| std::iter::repeat_n(value, degree);
@@ -29,7 +28,7 @@ impl SplineSpace {
         Self { degree, unknowns: knots.len() - degree - 1, knots, is_closed: false }
     }
 
-    /// Periodic cubics over `breaks`, which increase; there are at least three spans.
+    /// Periodic cubics over `breaks`, which must increase; at least three spans.
     pub(super) fn closed(breaks: &[f64]) -> Self {
         let (spans, degree) = (breaks.len() - 1, CUBIC);
         let period = breaks[spans] - breaks[0];
@@ -71,7 +70,7 @@ impl SplineSpace {
         let free = self.unknowns - 2 * self.fixed();
         if free > 0 {
             let factored = self.normal_equations(&rows, free).factored()?;
-            // The second round removes what rounding left in the squared equations.
+            // The second round removes the rounding error of the normal equations.
             for _ in 0..2 {
                 let change = factored.solve(&self.right_side(&rows, points, &control, free));
                 control[self.fixed()..].iter_mut().zip(change).for_each(|(c, d)| *c += d);
@@ -80,14 +79,14 @@ impl SplineSpace {
         Some(self.curve(control))
     }
 
-    /// Control points at each end that are given.
+    /// Number of fixed control points at each end.
     fn fixed(&self) -> usize {
         usize::from(!self.is_closed)
     }
 
     fn normal_equations(&self, rows: &[Row], free: usize) -> Banded {
         let border = if !self.is_closed { 0 } else { self.degree.min(free) };
-        // With so few unknowns the band would meet its own end.
+        // With so few unknowns the band would wrap onto itself.
         let border = if self.is_closed && free <= 2 * self.degree { free } else { border };
         let mut system = Banded::new(free, self.degree, border);
         for row in rows {
@@ -122,7 +121,7 @@ impl SplineSpace {
         (0..=self.degree).map(|a| control[(row.0 + a) % self.unknowns] * row.1[a]).sum()
     }
 
-    /// Index of the unknown that belongs to basis function `a` of a row; `None` for an end that is given.
+    /// Index of the unknown for basis function `a` of a row; `None` for a fixed end.
     fn column(&self, row: &Row, a: usize) -> Option<usize> {
         let index = (row.0 + a) % self.unknowns;
         let free = self.unknowns - 2 * self.fixed();

@@ -6,23 +6,25 @@ use super::{Division, Piece, State};
 use crate::chart::{Chart, Cylinder, Side};
 use glam::{DMat2, DVec2, DVec3};
 
-/// A face is parallel to the axis if the cosine between its normal and the axis is smaller.
+/// A face is parallel to the axis if the cosine of the angle between its normal and the axis is smaller than this.
 const PARALLEL: f64 = 0.1;
-/// Steps in which the axis is found. In each, faces whose normals pass it by more than this part of the size count for little.
+/// Iterations in which the axis is found. In each, faces whose normals miss the axis by more than this fraction of the
+/// size have little weight.
 const STEPS: usize = 8;
 const PAST: f64 = 0.02;
-/// Faces at one radius lie within this, in parts of the size.
+/// Faces are at one radius if their radii differ by less than this fraction of the size.
 const SAME_RADIUS: f64 = 0.01;
-/// The hub shows on at least this part of the part's surface, and in this part of the sectors around the axis.
+/// The hub must be visible on at least this fraction of the part's surface, and in this fraction of the sectors around
+/// the axis.
 const SEEN: f64 = 0.05;
 const ROUND: f64 = 0.6;
-/// No more than this part of what lies beyond it lies beside its ends.
+/// At most this fraction of the area beyond the hub may lie past its ends.
 const ASIDE: f64 = 0.02;
 const SECTORS: usize = 24;
-/// Level layers must leave this many times as much overhanging.
+/// Level layers must leave this many times as much area overhanging.
 const BETTER: f64 = 2.0;
 
-/// The part as layers around its hub, where it has one and much less overhangs than in level layers.
+/// The part as layers around its hub, if it has one and far less area overhangs than in level layers.
 pub(super) fn around(whole: &State, judge: &Judge) -> Option<Division> {
     if judge.settings.tilt < 90.0 {
         return None;
@@ -39,7 +41,7 @@ pub(super) fn around(whole: &State, judge: &Judge) -> Option<Division> {
         seam: SEAM,
     });
     let piece = Piece { chart, within: Vec::new(), on_stock: true };
-    // All around an axis that lies level, layers also hang overhead.
+    // All around a horizontal axis, layers also hang overhead.
     let lies = lies(hub.axis);
     let tilt = 90.0 + lies.min(180.0 - lies);
     (BETTER * hanging < whole.hanging[0]).then(|| Division { pieces: vec![piece], hanging, tilt })
@@ -48,14 +50,14 @@ pub(super) fn around(whole: &State, judge: &Judge) -> Option<Division> {
 /// Where layers are cut open, °.
 const SEAM: f64 = 180.0;
 
-/// A cylinder that is seen between what stands on it.
+/// A cylinder whose surface shows between what stands on it.
 struct Hub {
     axis: DVec3,
     through: DVec3,
     radius: f64,
-    /// Its area that is seen, mm².
+    /// Its visible area, mm².
     seen: f64,
-    /// Where it begins and ends along the axis, mm.
+    /// Its ends along the axis, mm.
     ends: [f64; 2],
 }
 
@@ -63,7 +65,7 @@ impl Hub {
     fn about(axis: DVec3, samples: &[Sample], judge: &Judge) -> Option<Self> {
         let (u, v) = axis.any_orthonormal_pair();
         let flat = |p: DVec3| DVec2::new(u.dot(p), v.dot(p));
-        // Place, normal and area of what is parallel to the axis.
+        // Position, normal and area of the samples parallel to the axis.
         let faces: Vec<(DVec2, DVec2, f64)> = samples
             .iter()
             .filter(|sample| sample.normal.dot(axis).abs() < PARALLEL)
@@ -102,7 +104,7 @@ impl Hub {
         (seen > SEEN * judge.surface && round >= ROUND && hub.carries(samples, judge)).then_some(hub)
     }
 
-    /// From the axis to a piece of the surface.
+    /// Vector from the axis to a sample of the surface.
     fn away(&self, sample: &Sample) -> DVec3 {
         (sample.place - self.through).reject_from_normalized(self.axis)
     }
@@ -111,7 +113,7 @@ impl Hub {
         self.away(sample).length() > self.radius + SAME_RADIUS * judge.size
     }
 
-    /// Whether all that lies beyond it lies over it.
+    /// Whether (almost) everything beyond its radius lies between its ends.
     fn carries(&self, samples: &[Sample], judge: &Judge) -> bool {
         let slack = 2.0 * SAME_RADIUS * judge.size;
         let aside = |sample: &&Sample| {
@@ -123,7 +125,7 @@ impl Hub {
         all > SEEN * judge.surface && aside < ASIDE * all
     }
 
-    /// Area beyond the hub that overhangs where layers lie around it, mm².
+    /// Area beyond the hub that overhangs if layers lie around it, mm².
     fn hanging(&self, samples: &[Sample], judge: &Judge) -> f64 {
         let hangs = |sample: &&Sample| {
             self.is_beyond(sample, judge) && judge.hangs(sample, self.away(sample).normalize_or_zero())
@@ -132,7 +134,7 @@ impl Hub {
     }
 }
 
-/// The point past which the fewest normals point, mm.
+/// The point nearest to all normals, as lines (weighted least squares), mm.
 fn middle(faces: &[(DVec2, DVec2, f64)], past: f64) -> Option<DVec2> {
     let mut middle: Option<DVec2> = None;
     for _ in 0..STEPS {

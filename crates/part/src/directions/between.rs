@@ -1,21 +1,22 @@
-//! A plane between two sets of points: the way between their convex hulls is shortened until a plane square to it parts them
-//! (Gilbert's algorithm, ended early).
+//! A plane that separates two sets of points: the vector between their convex hulls is shortened until a plane square
+//! to it separates them (Gilbert's algorithm, stopped early).
 
 use crate::chart::Plane;
 use glam::DVec3;
 
-/// Most steps; convex hulls that need more are taken to touch.
+/// Most iterations; convex hulls that need more are taken to touch.
 const STEPS: usize = 400;
-/// Steps end when the hulls are apart by this part of the way between them, so that the plane has room on both sides.
+/// Iteration stops when the hulls are apart by this fraction of the vector between them, so that the plane has
+/// clearance on both sides.
 const ROOM: f64 = 0.7;
-/// Hulls nearer than this are not parted, mm.
+/// Hulls nearer than this are not separated, mm.
 const APART: f64 = 0.05;
 
-/// A plane between the convex hulls of two sets, with `upper` above it, as far from one as from the other; none where they meet.
+/// A plane between the convex hulls of two sets, with `upper` above it, equally far from both; `None` if they touch.
 pub(super) fn between(upper: &[DVec3], lower: &[DVec3]) -> Option<Plane> {
     let farthest =
         |points: &[DVec3], way: DVec3| points.iter().copied().max_by(|a, b| way.dot(*a).total_cmp(&way.dot(*b)));
-    // Points of the two hulls; the way between them becomes the shortest.
+    // Points of the two hulls; the vector between them converges to the shortest.
     let (mut above, mut below) = (*upper.first()?, *lower.first()?);
     for _ in 0..STEPS {
         let way = above - below;
@@ -29,7 +30,7 @@ pub(super) fn between(upper: &[DVec3], lower: &[DVec3]) -> Option<Plane> {
             let middle = (up.dot(next_above) + up.dot(next_below)) / 2.0;
             return Some(Plane { origin: up * middle, up });
         }
-        // To the point nearest to the other hull on the line to the next ones.
+        // Move to the point nearest to the other hull on the line to the next points.
         let step = next - way;
         let part = (-way.dot(step) / step.length_squared()).clamp(0.0, 1.0);
         above += (next_above - above) * part;

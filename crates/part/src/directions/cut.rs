@@ -1,4 +1,4 @@
-//! A plane takes off what lies above it, as pieces with directions of their own.
+//! A cut: what lies above a plane is taken off as pieces with directions of their own.
 
 use super::between::between;
 use super::samples::{area, samples};
@@ -11,11 +11,11 @@ use glam::DVec3;
 /// Directions that differ by less than this are the same, °.
 const SAME: f64 = 2.0;
 
-/// What is left below a cut is at least so thick, in bead widths, and has this part of the part's surface.
+/// What remains below a cut must be this thick, in bead widths, and have this fraction of the part's surface.
 const THICK: f64 = 3.0;
 const LEAST: f64 = 0.05;
 
-/// How far a mesh reaches along a direction, mm.
+/// Extent of a mesh along a direction, mm.
 fn thickness(mesh: &Mesh, along: DVec3) -> f64 {
     let reach = mesh.vertices.iter().map(|p| along.dot(*p));
     let (low, high) = reach.fold((f64::MAX, f64::MIN), |(low, high), at| (low.min(at), high.max(at)));
@@ -28,7 +28,7 @@ struct Group {
     mesh: Mesh,
 }
 
-/// The division after a cut; none where nothing is cut, or pieces cannot be parted by planes.
+/// The division after a cut; `None` if nothing is cut or planes cannot separate the pieces.
 pub(super) fn cut(state: &State, plane: Plane, judge: &Judge) -> Option<State> {
     let down = Plane { origin: plane.origin, up: DVec3::ZERO - plane.up };
     let (upper, trunk) = (plane.above(&state.trunk), down.above(&state.trunk));
@@ -36,12 +36,12 @@ pub(super) fn cut(state: &State, plane: Plane, judge: &Judge) -> Option<State> {
         return None;
     }
     let samples = samples(&trunk, judge.size);
-    // What stands on a thin slice of the part stands on nothing.
+    // A thin slice of the part is nothing to stand on.
     if area(samples.iter()) < LEAST * judge.surface || thickness(&trunk, plane.up) < THICK * judge.settings.bead {
         return None;
     }
     let (groups, hanging) = groups(&upper, plane, judge);
-    // The part's own undersides that lie in the cut are no cut.
+    // Undersides of the part itself that lie in the plane are not made by the cut.
     let hanging = hanging + area(state.samples.iter().filter(|sample| judge.stands(sample, plane)));
     let pieces = pieces(&groups, plane, &state.cuts)?;
     let hanging = [judge.hanging(&samples, DVec3::Z, judge.table()), state.hanging[1] + hanging];
@@ -52,7 +52,7 @@ pub(super) fn cut(state: &State, plane: Plane, judge: &Judge) -> Option<State> {
     Some(State { trunk, samples, cuts, pieces: all, hanging, cost })
 }
 
-/// What was taken off, by direction, and how much of it still overhangs, mm².
+/// What was taken off, grouped by direction, and how much of it still overhangs, mm².
 fn groups(upper: &Mesh, plane: Plane, judge: &Judge) -> (Vec<Group>, f64) {
     let solids = Solids::of(upper);
     let (mut groups, mut hanging): (Vec<Group>, f64) = (Vec::new(), 0.0);
@@ -69,7 +69,7 @@ fn groups(upper: &Mesh, plane: Plane, judge: &Judge) -> (Vec<Group>, f64) {
     (groups, hanging)
 }
 
-/// The groups as pieces above a plane, each parted from the others by planes.
+/// The groups as pieces above a plane, separated from each other by further planes.
 fn pieces(groups: &[Group], plane: Plane, cuts: &[Plane]) -> Option<Vec<Piece>> {
     let piece = |(k, group): (usize, &Group)| {
         let others = groups.iter().enumerate().filter(|(other, _)| *other != k);

@@ -1,18 +1,19 @@
-//! Which way is up for which part of a model: it is divided by planes into pieces, each of which is built square to a direction of its
-//! own, so that as little as possible overhangs.
+//! Divides a model by planes into pieces, each built square to a direction of its own, so that as little as possible
+//! overhangs.
 //!
-//! Planes take off what lies above them, from the top down, as clipping planes do in Wu et al. 2018 (*General support-effective
-//! decomposition for multi-directional 3-D printing*, arXiv 1812.00606): a plane is worth as much as the overhang that what is left
-//! loses. What is taken off may be several pieces; each has the direction that suits it, and stands on the cut. The most promising
-//! divisions are followed side by side (a beam search). Only the surface is looked at, so broken meshes do not matter.
+//! Planes take off what lies above them, from the top down, as clipping planes do in Wu et al. 2018 (*General
+//! support-effective decomposition for multi-directional 3-D printing*, arXiv 1812.00606): a plane is worth the
+//! overhang that it spares what remains. What is taken off may be several pieces; each gets the direction that suits it
+//! best, and stands on the cut. The most promising divisions are pursued in parallel (a beam search). Only the surface
+//! is examined, so broken meshes do not matter.
 //!
 //! | file | what it does |
 //! | --- | --- |
 //! | `around` | blades on a hub: layers around an axis |
-//! | `samples` | the surface as many small pieces |
-//! | `ways` | directions worth trying, and the one that suits a piece best |
+//! | `samples` | the surface as many small samples |
+//! | `ways` | candidate directions, and the best one for a piece |
 //! | `cut` | a plane takes off what lies above it |
-//! | `between` | a plane between two pieces |
+//! | `between` | a plane that separates two pieces |
 
 mod around;
 mod between;
@@ -30,67 +31,68 @@ use samples::{Sample, area, samples};
 use std::sync::Arc;
 use ways::Judge;
 
-/// What may be divided how.
+/// Limits for dividing a part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Largest angle between a wall and the direction in which it is built, °.
     pub lean: f64,
-    /// Largest angle between a direction and the vertical, °. Around a hub, whose axis the part turns about, it must be 90.
+    /// Largest angle between a build direction and the vertical, °. Layers around a hub need 90, because the part turns
+    /// about the hub's axis.
     pub tilt: f64,
-    /// Width of a bead, mm: overhangs as small as a few beads do not count.
+    /// Width of a bead, mm: overhangs of a few beads are ignored.
     pub bead: f64,
 }
 
 /// A way to divide a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Division {
-    /// In the order in which they are built.
+    /// The pieces, in build order.
     pub pieces: Vec<Piece>,
-    /// Area that still overhangs, or lies so near the table that a torch of 25 mm radius has no room, mm².
+    /// Area that still overhangs, or is so near the table that a torch of 25 mm radius would touch it, mm².
     pub hanging: f64,
-    /// Angle between the vertical and the direction that lies farthest from it, °.
+    /// Largest angle between a direction and the vertical, °.
     pub tilt: f64,
 }
 
 /// A piece of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
-    /// How its layers lie; the first begins at its lowest place.
+    /// The shape of its layers; the first begins at its lowest point.
     pub chart: Chart,
-    /// It is what of the part lies above these planes, and above its first layer.
+    /// The piece is what lies above these planes and above the start of its first layer.
     pub within: Vec<Plane>,
     /// Whether its first layer lies on metal that is there already, such as a turned hub.
     pub on_stock: bool,
 }
 
-/// Number of divisions that are followed side by side, and of planes that are tried on each.
+/// Divisions pursued in parallel, and planes tried on each.
 const BEAM: usize = 3;
 const TRIES: usize = 80;
-/// No part is cut more often.
+/// Most cuts of a part.
 const CUTS: usize = 6;
-/// Directions nearer than this are alike: about 10°.
+/// Directions that differ by less than this are alike, rad: about 10°.
 const ALIKE: f64 = 0.17;
-/// Number of divisions that are offered.
+/// Most divisions that are offered.
 const OFFERED: usize = 3;
-/// Divisions are offered that leave no more than this part of what overhangs in level layers.
+/// Divisions are offered if they leave at most this fraction of what overhangs in level layers.
 const BETTER: f64 = 0.7;
-/// A cut must spare this part of the surface from overhanging.
+/// A cut must spare at least this fraction of the surface from overhanging.
 const WORTH: f64 = 0.004;
-/// What a piece, and the tilt of a whole part by 90°, cost as overhang, in parts of the surface.
+/// What a piece, and a tilt of 90°, cost as overhang, as fractions of the surface.
 const PIECE: f64 = 0.002;
 const TILT: f64 = 0.02;
-/// A part branches if some of its surface lies farther from the middle line than this many times the mean distance.
+/// A part branches if some of its surface is farther from the middle line than this many times the mean distance.
 const BRANCHES: f64 = 2.5;
-/// A middle line that ends this near to level, °, ends level.
+/// A middle line within this of horizontal, °, counts as horizontal.
 const SLACK: f64 = 2.0;
 
 /// A division that may be cut further.
 #[derive(Clone)]
 struct State {
-    /// What is left below the cuts.
+    /// What remains below the cuts.
     trunk: Mesh,
     samples: Vec<Sample>,
-    /// Planes with what is left above them.
+    /// The cuts, each with the remaining part above it.
     cuts: Vec<Plane>,
     /// What was taken off, the highest first.
     pieces: Vec<Piece>,
@@ -99,8 +101,8 @@ struct State {
     cost: f64,
 }
 
-/// Ways to divide a part that stands on the table: along a tube or around a hub, or, where that leaves something overhanging, by planes,
-/// the best first. The part as one piece is the last of them, and the only one where nothing overhangs.
+/// Ways to divide a part that stands on the table: along a tube or around a hub, or, if that leaves overhangs, by
+/// planes, the best first. The part as one piece comes last, and alone if nothing overhangs.
 ///
 /// ```
 /// use bead_part::directions::{Settings, divisions};
@@ -166,7 +168,7 @@ fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Option
         Err(NoMiddleLine::Cancelled(cancelled)) => return Err(cancelled),
         Err(_) => return Ok(None),
     };
-    // All of the part lies along it: it ends where the part does, and no branch leaves it.
+    // The whole part must follow the line: neither reach past its ends nor branch off it.
     let lies: Vec<Along> = whole.samples.iter().map(|sample| Along::of(guide.points(), sample.place)).collect();
     let usual = lies.iter().map(|along| along.away).sum::<f64>() / lies.len() as f64;
     if lies.iter().any(|along| along.away > BRANCHES * usual || along.beyond > usual) {
@@ -177,7 +179,7 @@ fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Option
     let hanging = area(whole.samples.iter().zip(&lies).filter(hangs).map(|(sample, _)| sample));
     let along = guide.points().windows(2).map(|pair| (pair[1] - pair[0]).normalize_or_zero());
     let tilt = along.map(ways::lies).fold(0.0, f64::max);
-    // The ends of a middle line are a little off.
+    // The ends of a middle line are slightly inaccurate.
     let tilt = if (tilt - 90.0).abs() < SLACK { 90.0 } else { tilt };
     let chart = Chart::Guide(Arc::new(guide));
     let piece = Piece { chart, within: Vec::new(), on_stock: false };
@@ -185,13 +187,13 @@ fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Option
     Ok(fits.then(|| Division { pieces: vec![piece], hanging, tilt }))
 }
 
-/// How a place lies along a line through points.
+/// Position of a point relative to a line through points.
 struct Along {
-    /// Its distance from the line, mm.
+    /// Distance from the line, mm.
     away: f64,
-    /// How far it lies beyond one of its ends, mm.
+    /// Distance beyond an end of the line, mm.
     beyond: f64,
-    /// Where the line goes there.
+    /// Direction of the line there.
     way: DVec3,
 }
 

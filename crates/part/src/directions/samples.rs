@@ -1,9 +1,10 @@
-//! The surface of a part as places with a direction and an area, small enough that a plane takes or leaves each as a whole.
+//! The surface of a part as samples with a direction and an area, so small that a plane takes or leaves each as a
+//! whole.
 
 use crate::model::Mesh;
 use glam::DVec3;
 
-/// A piece of the surface.
+/// A sample of the surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     /// Its middle, mm.
@@ -14,16 +15,16 @@ pub(super) struct Sample {
     pub(super) area: f64,
 }
 
-/// Area of pieces, mm².
+/// Total area, mm².
 pub(super) fn area<'a>(samples: impl Iterator<Item = &'a Sample>) -> f64 {
     // A sum of nothing would be a negative zero.
     samples.fold(0.0, |sum, sample| sum + sample.area)
 }
 
-/// Pieces are divided until their edges are shorter than this part of the part's size.
+/// Samples are divided until their edges are shorter than this fraction of the part's size.
 const FINE: f64 = 0.03;
 
-/// The surface of a mesh, divided into pieces no longer than a part of `size` (mm).
+/// The surface of a mesh, divided into samples with edges shorter than [`FINE`] times `size` (mm).
 pub(super) fn samples(mesh: &Mesh, size: f64) -> Vec<Sample> {
     let mut samples = Vec::with_capacity(mesh.triangles.len());
     let mut open: Vec<[DVec3; 3]> = Vec::new();

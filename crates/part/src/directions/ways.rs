@@ -1,4 +1,4 @@
-//! Directions worth trying, and how well they suit a piece.
+//! Candidate directions, and how well they suit a piece.
 
 use super::samples::{Sample, area};
 use super::{PIECE, Settings, TILT, TRIES, WORTH};
@@ -8,44 +8,46 @@ use glam::{DQuat, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Directions spread over the half sphere, close enough together that turning one in small steps finds the best.
+/// Directions spread over the half sphere, so close together that refining one in small steps finds the best.
 const SPREAD: usize = 160;
-/// The largest flat faces give directions, too; their normals are collected on a grid of this spacing.
+/// The largest flat faces also give directions; their normals are binned on a grid of this spacing.
 const FACES: usize = 16;
 const SAME_FACE: f64 = 0.02;
-/// Steps in which a direction is turned to a better one, °.
+/// Angles by which a direction is turned in search of a better one, °.
 const TURNS: [f64; 5] = [6.0, 3.0, 1.5, 0.5, 0.1];
-/// Ways to turn it that are tried.
+/// Axes tried for each such turn.
 const TRIED: usize = 12;
-/// Planes along a direction at which a part may be cut.
+/// Heights along a direction at which a part may be cut.
 const HEIGHTS: usize = 60;
-/// Along each direction, planes are tried that spare these shares of the most that one of them can.
+/// Along each direction, the planes tried spare these fractions of the most that one plane can.
 const SHARES: [f64; 4] = [1.0, 0.9, 0.7, 0.45];
-/// Two planes are alike whose directions differ by less than this, °, and whose heights by less than this part of the size.
+/// Two planes are alike if their directions differ by less than this, °, and their heights by less than this fraction
+/// of the size.
 const SAME_CUT: (f64, f64) = (8.0, 0.04);
-/// How much a leaning face costs that does not overhang, as a part of its area if it faced straight down.
+/// Cost of a leaning face that does not overhang, as a fraction of its cost if it faced straight down.
 const LEANS: f64 = 0.05;
-/// Radius of a torch, and its distance from the metal, mm.
+/// Radius of a torch, and its height above the metal, mm.
 const TORCH: f64 = 25.0;
-/// Overhang up to this many squared bead widths does not count.
+/// Overhang up to this many squared bead widths is ignored.
 const NOTHING: f64 = 4.0;
-/// A face lies on the table, or in a cut, if it is so near, in parts of the size, and faces it within the angle of this cosine.
+/// A face lies on the table or in a cut if it is within this fraction of the size, and faces it within the angle of
+/// this cosine.
 const ON_IT: f64 = 2e-3;
 const FACES_IT: f64 = 0.99;
 
-/// What directions are judged by.
+/// Data by which directions are judged.
 pub(super) struct Judge {
     pub(super) settings: Settings,
-    /// Of the whole part, mm.
+    /// Size of the whole part, mm.
     pub(super) size: f64,
-    /// Of the whole part, mm².
+    /// Surface of the whole part, mm².
     pub(super) surface: f64,
-    /// Overhang that does not count, mm².
+    /// Overhang that is ignored, mm².
     pub(super) nothing: f64,
-    /// Sine of the angle by which walls may lean.
+    /// Sine of the largest angle at which walls may lean.
     steep: f64,
     ways: Vec<DVec3>,
-    /// Those of them that are square to large flat faces.
+    /// Directions square to large flat faces.
     pub(super) faces: Vec<DVec3>,
 }
 
@@ -66,11 +68,11 @@ impl Judge {
         Plane::default()
     }
 
-    /// Area that overhangs where layers are square to `up`, or is so near the table that the torch has no room, mm²; what stands on
-    /// `base` does not overhang.
+    /// Area that overhangs if layers are square to `up`, or is so near the table that the torch would touch it, mm²;
+    /// what stands on `base` does not overhang.
     pub(super) fn hanging(&self, samples: &[Sample], up: DVec3, base: Plane) -> f64 {
         let tilt = up.angle_between(DVec3::Z);
-        // A torch square to the layer touches the table below this height: its side is a radius away from its axis.
+        // Below this height a torch square to the layer touches the table: its side is one radius away from its axis.
         let low = TORCH * (tilt.sin() - tilt.cos());
         let hangs = |sample: &&Sample| sample.place.z < low || self.hangs(sample, up) && !self.stands(sample, base);
         area(samples.iter().filter(hangs))
@@ -85,27 +87,27 @@ impl Judge {
         height.abs() < ON_IT * self.size && -sample.normal.dot(base.up) > FACES_IT
     }
 
-    /// What is wrong with a direction for a piece on a base, as an area, mm².
+    /// The cost of a direction for a piece on a base, as an area, mm².
     fn cost(&self, samples: &[Sample], up: DVec3, base: Plane) -> f64 {
         let leaning = samples.iter().filter(|sample| !self.stands(sample, base));
         let leaning: f64 = leaning.map(|sample| sample.area * (-sample.normal.dot(up)).max(0.0)).sum();
         self.hanging(samples, up, base) + LEANS * leaning + self.tilt(lies(up))
     }
 
-    /// What it costs to build along a direction that lies so far from the vertical, °, as an area, mm².
+    /// The cost of a build direction at this angle from the vertical, °, as an area, mm².
     pub(super) fn tilt(&self, degrees: f64) -> f64 {
         TILT * self.surface * degrees / 90.0
     }
 
-    /// What the pieces of a division cost, as an area, mm².
+    /// The cost of the number of pieces in a division, as an area, mm².
     pub(super) fn pieces(&self, count: usize) -> f64 {
         PIECE * self.surface * count as f64
     }
 
-    /// The direction that suits a piece best that stands on a base.
+    /// The direction that best suits a piece standing on `base`.
     pub(super) fn best(&self, samples: &[Sample], base: Plane) -> DVec3 {
         let least = self.settings.tilt.to_radians().cos() - 1e-6;
-        // It stands on its base.
+        // The piece must stand on its base.
         let fits = |up: DVec3| up.z >= least && up.dot(base.up) >= 0.5;
         let ways = self.ways.iter().copied().chain([base.up]).filter(|up| fits(*up));
         let judged = ways.map(|up| (self.cost(samples, up, base), up));
@@ -156,7 +158,7 @@ pub(super) fn planes(samples: &[Sample], judge: &Judge) -> Vec<Plane> {
             found.push((spared - 0.5 * left - judge.tilt(lies(*up)), spared, plane));
         }
         let most = found.iter().map(|(worth, ..)| *worth).fold(0.0, f64::max);
-        // For each share of what can be spared the highest plane, which takes off no more than it must.
+        // For each fraction, the highest plane that spares so much: it takes off no more than it must.
         let highest = |share: &f64| found.iter().copied().find(|(worth, ..)| *worth >= share * most);
         let worthwhile = |(_, spared, _): &(f64, f64, Plane)| *spared > WORTH * judge.surface;
         SHARES.iter().filter_map(highest).filter(worthwhile).map(|(worth, _, plane)| (worth, plane)).collect::<Vec<_>>()
@@ -186,7 +188,7 @@ fn spread() -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// Normals of the largest flat faces, those that point down turned over.
+/// Normals of the largest flat faces; those that point down are reversed.
 fn faces(mesh: &Mesh) -> Vec<DVec3> {
     let mut sums: std::collections::BTreeMap<[i64; 3], (DVec3, f64)> = std::collections::BTreeMap::new();
     for corners in &mesh.triangles {

@@ -10,14 +10,14 @@ use std::f64::consts::PI;
 pub const WALL: f64 = 3.5;
 /// Height, mm.
 pub const HEIGHT: f64 = 100.0;
-/// From end to end of the mean line, mm.
+/// Length of the mean line from end to end, mm.
 const CHORD: f64 = 90.0;
-/// Largest rise of the mean line over its chord, and where, as shares of the chord: the mean line of a NACA profile.
+/// Largest camber of the mean line, and where, as fractions of the chord: the mean line of a NACA profile.
 const CAMBER: f64 = 0.14;
 const CREST: f64 = 0.4;
 /// Turn from the foot to the tip, radians.
 const TWIST: f64 = 25.0 * PI / 180.0;
-/// Pieces of the mean line; its chords stay within 0.003 mm.
+/// Segments of the mean line; its chords stay within 0.003 mm.
 const PIECES: u32 = 150;
 /// Steps of the twist; its chords stay within 0.01 mm.
 const STEPS: u32 = 24;
@@ -47,7 +47,7 @@ fn share(k: u32) -> f64 {
     f64::from(k) / f64::from(PIECES)
 }
 
-/// A point of the mean line at the foot, before the twist, by its share of the chord, and the unit normal to its left.
+/// A point of the mean line at the foot, before the twist, at a fraction of the chord, and the unit normal to its left.
 fn mean(x: f64) -> (DVec2, DVec2) {
     let span = if x < CREST { CREST } else { 1.0 - CREST };
     let off = (x - CREST) / span;
@@ -55,7 +55,7 @@ fn mean(x: f64) -> (DVec2, DVec2) {
     (DVec2::new(x - 0.5, y - 0.6 * CAMBER) * CHORD, DVec2::new(-slope, 1.0).normalize())
 }
 
-/// The outline at the foot: one side out, the other back.
+/// The outline at the foot: along one side and back along the other.
 fn foot() -> Polygon {
     let side = |left: f64| {
         move |k: u32| {

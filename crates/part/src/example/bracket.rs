@@ -1,5 +1,5 @@
-//! A bracket: an upright plate, an arm at its upper end and a gusset below the arm. As it stands, arm and gusset hang in the air:
-//! it is welded as its preform.
+//! A bracket: an upright plate, an arm at its upper end and a gusset below the arm. As it stands, arm and gusset hang
+//! in the air, so it is welded as a preform.
 
 use super::outline;
 use crate::model::solid::Solid;
@@ -15,7 +15,7 @@ const THICK: f64 = 14.0;
 /// How far the gusset reaches along plate and arm, and how thick it is.
 const GUSSET: f64 = 50.0;
 const RIB: f64 = 12.0;
-/// Two holes in the plate, so high, and two in the arm, so far out; how far apart they are from the middle, and their radius.
+/// Height of two holes in the plate and reach of two in the arm; their distance from the middle, and their radius.
 const LOW: f64 = 30.0;
 const FAR: f64 = 80.0;
 const ASIDE: f64 = 18.0;
@@ -33,7 +33,7 @@ pub(super) fn build() -> Solid {
     let arm_holes = [-ASIDE, ASIDE].map(|aside| hole(FAR, aside));
     let mut solid = Solid::default();
 
-    // The gusset leaves a slot in the faces that it stands on.
+    // Where the gusset stands, the faces below it are left open.
     let upright = [
         (-side, 0.0),
         (side, 0.0),
@@ -87,7 +87,7 @@ fn rectangle(low: (f64, f64), high: (f64, f64), holes: &[Ring]) -> Polygon {
     drawn(&[low, (high.0, low.1), high, (low.0, high.1)], holes)
 }
 
-/// Adds a flat face; `ahead` where the side from which its outline is counter-clockwise is outside.
+/// Adds a flat face; `ahead` if its outline is counter-clockwise seen from outside.
 fn face(solid: &mut Solid, outline: Polygon, ahead: bool, place: Place) {
     let first = solid.vertices.len();
     solid.vertices.extend(outline.rings().flat_map(Ring::points).map(|p| place(*p)));

@@ -4,9 +4,9 @@ use super::surface_body;
 use crate::model::solid::Solid;
 use glam::{DVec2, DVec3};
 
-/// Half of its length and of its width, mm.
+/// Half its length and width, mm.
 const HALF: DVec2 = DVec2::new(70.0, 45.0);
-/// mm
+/// Thickness of the cladding, mm.
 const THICKNESS: f64 = 5.6;
 /// Pieces along each side.
 const PIECES: [u32; 2] = [70, 46];

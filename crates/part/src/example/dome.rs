@@ -32,7 +32,7 @@ pub(super) fn build() -> Solid {
         let at = |k: u32| DVec2::from_angle(TAU * f64::from(k) / f64::from(AROUND)) * radius;
         vertices.extend((0..AROUND).flat_map(|k| [top(at(k)), under(at(k))]));
     }
-    // Of a place on a ring, the vertex above and the one below.
+    // The upper and the lower vertex at a position on a ring.
     let [above, below] = [0, 1].map(|side| move |ring: u32, k: u32| 2 + 2 * ((ring - 1) * AROUND + k % AROUND) + side);
     let mut triangles = Vec::new();
     for k in 0..AROUND {

@@ -9,13 +9,13 @@ const RADIUS: f64 = 40.0;
 const BORE: f64 = 18.0;
 const LENGTH: f64 = 70.0;
 const BLADES: u32 = 4;
-/// Blades begin inside the hub and end here, from the axis.
+/// Where blades begin, inside the hub, and end: distances from the axis, mm.
 const ROOT: f64 = 34.0;
 const TIP: f64 = 120.0;
 /// Half the length of a blade's section at its root and at its tip, and half its thickness.
 const HALF_CHORD: [f64; 2] = [30.0, 22.0];
 const HALF_THICKNESS: [f64; 2] = [8.0, 6.0];
-/// Angle of a section against the axis at the root and at the tip, °.
+/// Angle between a section and the axis at the root and at the tip, °.
 const PITCH: [f64; 2] = [20.0, 55.0];
 /// Steps of the twist.
 const STEPS: u32 = 24;
@@ -44,7 +44,7 @@ fn blade() -> Solid {
         let share = (z - ROOT) / (TIP - ROOT);
         let between = |ends: [f64; 2]| ends[0] + (ends[1] - ends[0]) * share;
         let [chord, thickness] = [HALF_CHORD, HALF_THICKNESS].map(between);
-        // A round end on a straight middle.
+        // Round ends on a straight middle section.
         let straight = p.x.signum() * (chord - thickness) * if p.x.abs() < 1e-9 { 0.0 } else { 1.0 };
         DVec2::from_angle(between(PITCH).to_radians()).rotate(p * thickness + DVec2::new(straight, 0.0))
     })

@@ -41,13 +41,13 @@ use glam::DVec2;
 pub struct Example {
     /// What people type: `propeller`.
     pub name: &'static str,
-    /// One line of description that ends with the extent along x, y and z, mm.
+    /// A one-line description that ends with the extent along x, y and z, mm.
     pub about: &'static str,
     build: fn() -> Solid,
     curves: Option<fn() -> Vec<Nurbs>>,
-    /// How its layers lie if they are not level: [`Chart`](crate::chart::Chart) as text.
+    /// Its layers, if they are not level: [`Chart`](crate::chart::Chart) as text.
     pub chart: Option<&'static str>,
-    /// The text of its file of bodies, where a chart alone does not say how it is welded.
+    /// The text of its bodies file, if a chart alone does not say how it is welded.
     bodies: Option<fn() -> String>,
 }
 
@@ -199,8 +199,8 @@ pub const ALL: &[Example] = &[
     },
 ];
 
-/// A file with one body, whose layers lie over a surface: its heights on a grid of `step` (mm), `columns` and `rows` to each side of
-/// the middle.
+/// A bodies file with one body whose layers follow a surface: its heights on a grid of `step` (mm), with `columns` and
+/// `rows` on each side of the middle.
 fn surface_body(name: &str, step: f64, columns: i32, rows: i32, height: impl Fn(DVec2) -> f64) -> String {
     let at = |i: i32, j: i32| DVec2::new(f64::from(i), f64::from(j)) * step;
     let grid = (-rows..=rows).flat_map(|j| (-columns..=columns).map(move |i| at(i, j)));
@@ -228,7 +228,7 @@ impl Example {
         stl::write(&format!("beadwright example {}", self.name), facets)
     }
 
-    /// The bodies as which it is welded, as a file of them (`beadwright plan --bodies`); `None` where its layers are level.
+    /// Its bodies, as the text of a bodies file (`beadwright plan --bodies`); `None` if its layers are level.
     pub fn bodies(&self) -> Option<String> {
         let one = || self.chart.map(|chart| format!("[[body]]\nname = \"{}\"\nchart = \"{chart}\"\n", self.name));
         self.bodies.map(|bodies| bodies()).or_else(one)

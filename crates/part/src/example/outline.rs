@@ -22,7 +22,7 @@ pub(super) fn arc(center: DVec2, radius: f64, from: f64, to: f64) -> Vec<DVec2> 
     (0..=count).map(|k| center + DVec2::from_angle(angle(k)) * radius).collect()
 }
 
-/// The angle of a chord that leaves its arc by [`CHORD_MM`], radians.
+/// The angle of a chord that departs from its arc by [`CHORD_MM`], radians.
 fn step(radius: f64) -> f64 {
     2.0 * (1.0 - CHORD_MM / radius.max(CHORD_MM)).acos()
 }

@@ -1,5 +1,5 @@
-//! A pot without a bottom, square below and round above. The wall is measured across, as a bead makes it: a layer shows
-//! it thicker where it leans, most at the corners.
+//! A pot without a bottom, square at the foot and round at the rim. The wall thickness is measured square to the wall,
+//! as a bead makes it: where the wall leans, most at the corners, a layer shows it thicker.
 
 use super::outline;
 use crate::curve::Nurbs;
@@ -14,7 +14,7 @@ const WALL: f64 = 4.0;
 const HALF_WIDTH: (f64, f64) = (50.0, 30.0);
 /// Outer corner radius at the foot; at the rim it is the half width, a circle.
 const FOOT_RADIUS: f64 = 12.0;
-/// Corners have the chords of an arc with this many times the rim's radius: 0.03 mm there is 0.0075 mm on the rim.
+/// Corners have as many chords as an arc of this many times the rim's radius: 0.03 mm there is 0.0075 mm on the rim.
 const FINE: f64 = 4.0;
 
 pub(super) fn build() -> Solid {
@@ -47,7 +47,7 @@ fn ring(part: f64) -> Ring {
     Ring::new(points.collect())
 }
 
-/// Where a point of the foot lies at height `z`, mm.
+/// Position of a point of the foot's outline at height `z`, mm.
 fn raised(p: DVec2, z: f64) -> DVec2 {
     let side = p.signum();
     let arm = p - side * (HALF_WIDTH.0 - FOOT_RADIUS);

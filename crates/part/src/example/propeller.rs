@@ -1,5 +1,5 @@
-//! A four-bladed ship propeller: paddles, narrow at the root and round at the tip, on a bored hub. The outline
-//! turns with height as a screw does, half the turn below mid height and half above, where the tips reach farthest.
+//! A four-bladed ship propeller: paddles, narrow at the root and round at the tip, on a bored hub. The outline turns
+//! with height like a screw, half the turn below mid height and half above; the tips reach farthest at mid height.
 
 use super::outline;
 use crate::model::solid::Solid;
@@ -19,7 +19,7 @@ const WIDEST_HALF_WIDTH: f64 = 30.0;
 const WIDEST_RADIUS: f64 = TIP_RADIUS * 2.0 / 3.0;
 /// Radius of the fillet between blade and hub.
 const FILLET_RADIUS: f64 = 12.0;
-/// Turn of the outline from bottom to top, radians.
+/// Twist of the outline from bottom to top, radians.
 const TWIST: f64 = 6.0 * PI / 180.0;
 /// Steps of the twist; an even number, so that one level lies at mid height.
 const STEPS: u32 = 8;
@@ -42,7 +42,7 @@ fn planform() -> Polygon {
     Polygon { outer: Ring::new(outer.collect()), holes: vec![bore] }
 }
 
-/// The blade along +x, from halfway to the blade before it to just short of halfway to the one after it.
+/// The blade along +x, from halfway to the previous blade to just short of halfway to the next.
 fn blade() -> Vec<DVec2> {
     let flank = polyline::simplify(&flank(), CHORD_MM);
     let without_last = flank.len() - 1;

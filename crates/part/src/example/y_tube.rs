@@ -1,12 +1,12 @@
-//! A thick tube that forks into two, to be welded as three bodies: a trunk up to where the arms part, and what is left of each arm, on
-//! the slopes that the trunk ends in.
+//! A thick tube that forks in two, to be welded as three bodies: a trunk up to where the arms part, and the rest of
+//! each arm on the slopes at the top of the trunk.
 
 use crate::model::solid::Solid;
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// The slopes and the layers of the arms lie half as steep as the arms lean.
+/// The slopes and the arms' layers are inclined half as much as the arms.
 pub(super) const BODIES: &str = r#"[[body]]
 name = "trunk"
 within = ["up=-0.241922/0/-0.970296,through=0/0/112", "up=0.241922/0/-0.970296,through=0/0/112"]
@@ -27,9 +27,9 @@ const RADII: [f64; 2] = [30.0, 14.0];
 const FORK: f64 = 45.0;
 /// Length of an arm from there, mm.
 const ARM: f64 = 110.0;
-/// Between an arm and the vertical, °.
+/// Angle between an arm and the vertical, °.
 const ANGLE: f64 = 28.0;
-/// Lines along each tube; with those at x = 0.
+/// Lines along each tube, including those at x = 0.
 const LINES: i32 = 128;
 
 pub(super) fn build() -> Solid {
@@ -55,7 +55,7 @@ pub(super) fn build() -> Solid {
     indexed(triangles.into_iter().chain(left))
 }
 
-/// A line along the trunk, and on along the right arm, by its place around the tube.
+/// A line up the trunk and on along the right arm, at one position around the tube.
 struct Line {
     /// Away from the middle line in the plane of the fork, and square to that plane, mm.
     across: f64,

@@ -11,7 +11,7 @@ pub(crate) struct HalfEdge {
     pub(crate) forward: bool,
 }
 
-/// The triangles across all edges, and how clean the edges are.
+/// The triangles across all edges, and the edges that are not clean.
 #[derive(Debug, Default)]
 pub(crate) struct Adjacency {
     pub(crate) neighbours: Vec<[u32; 3]>,
@@ -47,7 +47,7 @@ impl Adjacency {
         result
     }
 
-    /// Joins the half-edges of one edge in pairs of opposite direction.
+    /// Pairs half-edges of opposite direction on one edge.
     fn match_odd(&mut self, edge: Vec<HalfEdge>) {
         let side = |forward: bool| edge.iter().filter(move |h| h.forward == forward);
         for (&a, &b) in side(true).zip(side(false)) {
@@ -102,7 +102,7 @@ fn bucket_by_lower_vertex(vertex_count: usize, triangles: &[[u32; 3]]) -> (Vec<u
     (starts, half_edges)
 }
 
-/// Sorts each bucket; halves of the mesh in parallel, as long as that is worthwhile.
+/// Sorts each bucket; recursively halves the mesh for parallel work while that pays.
 fn sort_buckets(starts: &[u32], half_edges: &mut [u64]) {
     if starts.len() > 1 << 15 {
         let middle = starts.len() / 2;

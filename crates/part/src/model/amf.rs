@@ -42,7 +42,7 @@ fn read(text: impl BufRead, task: &Task) -> Result<Import, ImportError> {
     file.finish().build(task)
 }
 
-/// What was read so far.
+/// What has been read.
 struct File {
     resources: Resources,
     /// The object or constellation that is open.
@@ -51,7 +51,7 @@ struct File {
     at: DVec3,
     corners: [u32; 3],
     instance: Instance,
-    /// What constellations place.
+    /// Objects that constellations place.
     placed: BTreeSet<u32>,
 }
 
@@ -71,7 +71,7 @@ impl Instance {
     }
 }
 
-/// The key of an object; a file has only itself.
+/// The key of an object; a file names only its own objects.
 fn id(number: u32) -> Id {
     (String::new(), number)
 }
@@ -139,7 +139,7 @@ impl File {
         Ok(())
     }
 
-    /// What no constellation places stays where it is.
+    /// Objects that no constellation places stay where they are.
     fn finish(mut self) -> Resources {
         let free = self.resources.objects.keys().filter(|(_, number)| !self.placed.contains(number));
         self.resources.items = free.map(|id| (id.clone(), DAffine3::IDENTITY)).collect();
@@ -147,7 +147,7 @@ impl File {
     }
 }
 
-/// Millimetres in a unit of AMF.
+/// Millimetres per unit of AMF.
 fn in_mm(unit: &str) -> Result<f64, ImportError> {
     Ok(match unit {
         "" | "millimeter" => 1.0,

@@ -1,4 +1,4 @@
-//! A solid cut by a level plane: what lies above it, closed by a flat face.
+//! A solid cut by a level plane: the part above it, closed by a flat face.
 //!
 //! A vertex exactly on the plane counts as above it, for all its triangles alike, as in slicing. Where the surface has holes
 //! at the plane, they stay open.
@@ -9,7 +9,7 @@ use planar::triangulate::triangulate_by_edges;
 use planar::{Polygon, Ring};
 use std::collections::BTreeMap;
 
-/// The part of a mesh above the height `z` (mm), set onto z = 0; none where nothing lies above.
+/// The part of a mesh above the height `z` (mm), moved down to z = 0; `None` if nothing lies above.
 ///
 /// ```
 /// use bead_part::{example, model::cut};
@@ -32,7 +32,7 @@ pub fn above(mesh: &Mesh, z: f64) -> Option<(Mesh, RepairReport)> {
         let corners: Vec<u32> = std::iter::once(outer).chain(holes.iter().copied()).flatten().copied().collect();
         let ring = |ring: &[u32]| Ring::new(places(ring, &cut.vertices));
         let face = Polygon { outer: ring(outer), holes: holes.iter().map(|hole| ring(hole)).collect() };
-        // Seen from below.
+        // Wound counter-clockwise seen from below.
         triangles.extend(triangulate_by_edges(&face).into_iter().map(|[a, b, c]| [a, c, b].map(|i| corners[i])));
     }
     let floor = |vertices: Vec<DVec3>| vertices.into_iter().map(|v| v - DVec3::Z * z).collect();
@@ -46,7 +46,7 @@ struct Cut<'a> {
     vertices: Vec<DVec3>,
     /// The vertex on each edge that the plane cuts, by the edge's ends.
     crossings: BTreeMap<[u32; 2], u32>,
-    /// The edges of the face that closes the cut: where each begins, and where they end.
+    /// The edges of the closing face: for each start, its ends.
     rim: BTreeMap<u32, Vec<u32>>,
 }
 

@@ -1,4 +1,4 @@
-//! The formats of solids, one file each, and what they have in common: loose triangles become a repaired mesh.
+//! The formats of solids, one file each, and their common step: loose triangles become a repaired mesh.
 
 use super::merge_vertices::{BLOCK, VertexMerger};
 use super::{Import, ImportError, amf, obj, ply, repair, stl, threemf};
@@ -6,22 +6,22 @@ use crate::task::{Stage, Task};
 
 /// A format of solids.
 pub(super) struct Format {
-    /// Whether a file looks like one.
+    /// Whether a file looks like this format.
     pub(super) is: fn(&[u8]) -> bool,
     /// Reads it.
     pub(super) read: fn(&[u8], &Task) -> Result<Import, ImportError>,
 }
 
-/// All of them; STL comes last, since only its size identifies it.
+/// All formats; STL comes last, since only its size identifies it.
 pub(super) const ALL: [Format; 5] = [threemf::FORMAT, amf::FORMAT, ply::FORMAT, obj::FORMAT, stl::FORMAT];
 
-/// A triangle: its normal, 0 where the file has none, and its corners.
+/// A triangle: its normal (0 if the file gives none) and its corners.
 pub(super) type Facet = ([f32; 3], [[f32; 3]; 3]);
 
-/// No model has more triangles: their numbers have 32 bits, and a hostile file must not fill the memory.
+/// Most triangles of a model: indices have 32 bits, and a hostile file must not exhaust the memory.
 pub(super) const MOST_TRIANGLES: usize = 100_000_000;
 
-/// A mesh of `count` loose triangles; `place` says where in the file a triangle is.
+/// A mesh of `count` loose triangles; `place` names a triangle's location in the file.
 pub(super) fn of_facets(
     facets: impl Iterator<Item = Facet>,
     count: usize,
@@ -71,12 +71,12 @@ fn opposes(normal: [f32; 3], [a, b, c]: [[f32; 3]; 3]) -> bool {
     cross[0] * normal[0] + cross[1] * normal[1] + cross[2] * normal[2] < 0.0
 }
 
-/// Triangles of a polygon's corners: a fan, which is right for convex ones.
+/// Splits a polygon into a fan of triangles, which is correct for convex ones.
 pub(super) fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> + '_ {
     (2..corners.len()).map(|k| [corners[0], corners[k - 1], corners[k]])
 }
 
-/// The facets between vertices; `None` where a number refers to no vertex.
+/// The facet between three vertices; `None` if an index is out of range.
 pub(super) fn indexed(vertices: &[[f32; 3]], [a, b, c]: [u32; 3]) -> Option<Facet> {
     let at = |i: u32| vertices.get(i as usize).copied();
     Some(([0.0; 3], [at(a)?, at(b)?, at(c)?]))

@@ -1,19 +1,19 @@
-//! Models that are packed by gzip, such as `part.stl.gz`.
+//! Models compressed with gzip, such as `part.stl.gz`.
 
 use super::ImportError;
 use super::package::{most_of, unfolds};
 use flate2::read::MultiGzDecoder;
 use std::io::Read;
 
-/// Whether the bytes are packed by gzip.
+/// Whether the bytes are gzip data.
 pub(super) fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1f\x8b")
 }
 
-/// The bytes unpacked, as far as a model of this size may unpack.
+/// The decompressed bytes, up to the limit for a model of this size.
 ///
 /// # Errors
-/// [`ImportError::Broken`] for a damaged file, and for one that unpacks to too much.
+/// [`ImportError::Broken`] for a damaged file, and for one that decompresses to more than the limit.
 pub(super) fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, ImportError> {
     let broken = |reason: String| ImportError::Broken { format: "gzip", reason };
     let (most, mut unpacked) = (most_of(bytes.len()), Vec::new());

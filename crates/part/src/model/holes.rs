@@ -1,14 +1,14 @@
 //! Holes in a surface, closed with triangles of the least total area.
 //!
-//! A hole is a loop of open edges. It is closed by the triangulation of its loop with the least area (Barequet and Sharir 1995,
-//! "Filling gaps in the boundary of a polyhedron"), found by dynamic programming; no vertex is added.
+//! A hole is a loop of open edges. It is closed by the triangulation of its loop with the least area, found by dynamic
+//! programming (Barequet and Sharir 1995, "Filling gaps in the boundary of a polyhedron"); no vertex is added.
 
 use super::repair::mend;
 use super::{Import, Mesh, NO_NEIGHBOUR};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Loops of more edges are left open: the time grows with the third power of their number.
+/// Loops with more edges are left open: the time grows with the cube of their number.
 const MOST_EDGES: usize = 400;
 
 /// What was closed.
@@ -16,7 +16,7 @@ const MOST_EDGES: usize = 400;
 pub struct Closed {
     /// Holes that were closed.
     pub holes: usize,
-    /// Their triangles.
+    /// Triangles that close them.
     pub triangles: usize,
     /// The widest of them, in the units of the file.
     pub widest: f64,
@@ -46,7 +46,7 @@ impl Closed {
     }
 }
 
-/// Closes the holes that measure at most `widest` across, in the units of the file, and repairs what that leaves.
+/// Closes the holes at most `widest` across, in units of the file, and repairs the result.
 pub fn close(import: Import, widest: f64) -> (Import, Closed) {
     let Import { mut mesh, repair, .. } = import;
     let (loops, touching) = loops(&mesh);
@@ -77,7 +77,7 @@ pub fn close(import: Import, widest: f64) -> (Import, Closed) {
     (Import { mesh, repair: mended, ..import }, closed)
 }
 
-/// The loops of open edges, against the direction of their triangles, and how many vertices lie on more than one loop.
+/// The loops of open edges, against the direction of their triangles, and the number of vertices where loops touch.
 fn loops(mesh: &Mesh) -> (Vec<Vec<u32>>, usize) {
     let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for (corners, across) in mesh.triangles.iter().zip(&mesh.neighbours) {
@@ -86,7 +86,7 @@ fn loops(mesh: &Mesh) -> (Vec<Vec<u32>>, usize) {
         }
     }
     let touching = next.values().filter(|ends| ends.len() > 1).count();
-    // Only where there is one way on is it clear how the loop continues.
+    // A loop can be followed only where there is exactly one way on.
     let mut next: BTreeMap<u32, u32> =
         next.into_iter().filter(|(_, to)| to.len() == 1).map(|(from, to)| (from, to[0])).collect();
     let mut loops = Vec::new();
@@ -106,18 +106,18 @@ fn loops(mesh: &Mesh) -> (Vec<Vec<u32>>, usize) {
     (loops, touching)
 }
 
-/// The edge of an open surface, or a hole in it.
+/// The rim of an open surface, or a hole in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Opening {
-    /// How wide it is: the radius of a round one, the width of a slit.
+    /// Twice its area over its length: the radius of a round opening, the width of a slit.
     pub width: f64,
-    /// Length of its edges.
+    /// Length of its edges, in units of the mesh.
     pub length: f64,
-    /// A place on it.
+    /// A point on it.
     pub place: DVec3,
 }
 
-/// The openings of a surface, the widest first, lengths in its units. Open edges that touch make one opening.
+/// The openings of a surface, the widest first, in units of the mesh. Open edges that touch form one opening.
 pub fn openings(mesh: &Mesh) -> Vec<Opening> {
     let mut edges: Vec<[u32; 2]> = Vec::new();
     for (corners, across) in mesh.triangles.iter().zip(&mesh.neighbours) {
@@ -150,15 +150,15 @@ pub fn openings(mesh: &Mesh) -> Vec<Opening> {
     found
 }
 
-/// Diagonal of the box around a loop.
+/// Diagonal of the bounding box of a loop.
 fn extent(mesh: &Mesh, corners: &[u32]) -> f64 {
     let places = || corners.iter().map(|&corner| mesh.vertices[corner as usize]);
     let (low, high) = (places().reduce(DVec3::min), places().reduce(DVec3::max));
     low.zip(high).map_or(0.0, |(low, high)| low.distance(high))
 }
 
-/// The triangulation of a loop with the least area: for each pair of its corners, the least area that closes the loop between
-/// them.
+/// The triangulation of a loop with the least area, from the least area that closes the loop between each pair of its
+/// corners.
 fn least_area(mesh: &Mesh, corners: &[u32]) -> Vec<[u32; 3]> {
     let count = corners.len();
     let place = |k: usize| mesh.vertices[corners[k] as usize];

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Triangles whose corners are looked up together.
+/// Triangles whose corners are looked up in one batch.
 pub(crate) const BLOCK: usize = 32;
 
 /// Vertices found so far, and the table that finds them again.
@@ -14,7 +14,7 @@ pub(crate) struct VertexMerger {
 }
 
 impl VertexMerger {
-    /// Room for a closed mesh of this many triangles, which has about half as many vertices.
+    /// Capacity for a closed mesh of this many triangles, which has about half as many vertices.
     pub(crate) fn for_triangles(triangles: usize) -> Self {
         let slots = triangles.max(16).next_power_of_two();
         Self { vertices: Vec::with_capacity(triangles / 2 + 8), slots: vec![0; slots] }
@@ -22,8 +22,8 @@ impl VertexMerger {
 
     /// Appends the triangles between `corners`, three for each; negative zero counts as zero.
     ///
-    /// All corners of a block are looked up before the first is needed, so that the waits for memory overlap; they take
-    /// most of the time in a big model. Only what is not found that way is searched for one by one.
+    /// All corners of a block are looked up before the first is needed, so that the memory latencies overlap; they take
+    /// most of the time in a big model. Only corners not found that way are searched for one by one.
     pub(crate) fn add(&mut self, corners: &[[[f32; 3]; 3]], triangles: &mut Vec<[u32; 3]>) {
         for block in corners.chunks(BLOCK) {
             let mut found = [([0.0; 3], 0, None); 3 * BLOCK];

@@ -5,19 +5,19 @@
 //! | `formats` | the formats of solids, and how loose triangles become a mesh |
 //! | [`stl`] | binary and ASCII STL, distinguished by content |
 //! | `threemf`, `amf`, `obj`, `ply` | one other format each |
-//! | `placed` | objects that a file places, copies and assemblies |
+//! | `placed` | objects placed by a file, copies and assemblies |
 //! | [`outline`] | drawings in DXF and SVG, whose outlines become solids |
 //! | `package` | a 3MF file as an archive of files |
 //! | `xml` | elements of XML files, one after another |
 //! | `merge_vertices` | equal corners become one vertex |
 //! | `adjacency` | which triangle lies across each edge |
 //! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
-//! | [`cut`] | what lies above a plane |
+//! | [`cut`] | the part of a solid above a plane |
 //! | [`iges`] | curves from IGES files, and curves written as IGES |
 //! | `solid` | outlines become closed meshes |
 //! | `solids` | a mesh divided into its solids |
 //! | `triangle` | how near a point lies to a triangle |
-//! | [`units`] | millimetres or inches? |
+//! | [`units`] | is the file in millimetres or inches? |
 //! | `part` | a model is placed and becomes the part that is planned |
 //! | [`wall_curves`] | walls given by their centre-lines |
 
@@ -62,7 +62,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// Parts may reach this far from the origin, mm; the 2-D grid ends at 50 m.
+/// Greatest distance of a part from the origin along x, y or z, mm; the 2-D grid ends at 50 m.
 pub const MAX_REACH_MM: f64 = 20_000.0;
 
 /// Means "no triangle" in [`Mesh::neighbours`].
@@ -88,13 +88,13 @@ pub struct Import {
     pub repair: RepairReport,
     /// The format, in words: `binary STL`.
     pub format: &'static str,
-    /// The unit of the coordinates, where the file states it.
+    /// The unit of the coordinates, if the file states it.
     pub units: Option<Units>,
-    /// The objects that the file holds, where it names them.
+    /// The objects in the file, if it names them.
     pub objects: Vec<Object>,
-    /// What was passed over, as sentences.
+    /// What was skipped, as sentences.
     pub notes: Vec<String>,
-    /// Of a preform, what is milled from it.
+    /// For a preform, the part milled from it.
     pub milled: Option<Box<Milled>>,
 }
 
@@ -103,7 +103,7 @@ pub struct Import {
 pub struct Milled {
     /// The part, as it lies in the preform.
     pub mesh: Mesh,
-    /// Metal over each of its triangles, along the normal from the middle, mm.
+    /// Machining stock over each of its triangles, along the normal from the triangle's middle, mm.
     pub stock: Vec<f64>,
 }
 
@@ -132,7 +132,7 @@ pub enum ImportError {
     /// The file is empty.
     #[error("the file is empty (0 bytes). Export the model again.")]
     Empty,
-    /// A format that is known but not read.
+    /// A format that is recognised but not read.
     #[error(
         "this is {found}, which Beadwright does not read by itself. Save the model as STL, 3MF or OBJ and try again."
     )]
@@ -202,7 +202,7 @@ pub enum ImportError {
         /// Number read.
         triangles: usize,
     },
-    /// The part is too far out.
+    /// The part lies too far from the origin.
     #[error(
         "the model reaches {reach} m from the origin; at most {most} m are supported. Move it to the origin, or check the unit of the file.",
         reach = metres(*reach_m),
@@ -217,13 +217,13 @@ pub enum ImportError {
     Cancelled(#[from] Cancelled),
 }
 
-/// A length that may be arbitrarily large, m.
+/// A length that may be arbitrarily large, in m, as text.
 fn metres(length: f64) -> String {
     if length < 1e6 { format!("{length:.1}") } else { format!("{length:.0e}") }
 }
 
-/// Reads a model from the bytes of a file; the content decides the format, not the file's name. A file that ends too early
-/// or holds more than it says is refused.
+/// Reads a model from the bytes of a file; its content decides the format, not its name. A file that ends too early or
+/// holds more than it says is refused.
 ///
 /// # Errors
 /// [`ImportError`], with the byte or line and the reason.
@@ -235,7 +235,7 @@ pub fn import(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     }
 }
 
-/// Like [`import`], but takes whatever triangles a damaged file holds; [`RepairReport::damage`] says what is wrong.
+/// Like [`import`], but accepts the triangles that a damaged file holds; [`RepairReport::damage`] says what is wrong.
 ///
 /// # Errors
 /// [`ImportError`], with the byte or line and the reason.
@@ -263,7 +263,7 @@ pub fn import_damaged(bytes: &[u8], task: &Task) -> Result<Import, ImportError> 
     }
 }
 
-/// What is packed by gzip is unpacked, text becomes UTF-8 with usual line ends, anything else stays as it is.
+/// Decompresses gzip, and turns text into UTF-8 with `\n` line ends; anything else is unchanged.
 ///
 /// # Errors
 /// [`ImportError`] for text in an encoding that is not read, and for data that cannot be unpacked.
@@ -289,13 +289,13 @@ pub fn is_iges(bytes: &[u8]) -> bool {
         && stl::announced_size(bytes) != Some(bytes.len())
 }
 
-/// Whether the bytes are those of a solid in a format that can be recognised by content, as STL cannot.
+/// Whether the bytes are a solid in a format that can be recognised by content, which excludes STL.
 pub fn is_solid(bytes: &[u8]) -> bool {
     let [known @ .., _stl] = &formats::ALL;
     stl::announced_size(bytes) != Some(bytes.len()) && known.iter().any(|format| (format.is)(bytes))
 }
 
-/// Whether the bytes are those of an STL file: its size is the one that it announces, or it begins like a text STL.
+/// Whether the bytes are an STL file: the size is the one it announces, or it begins like ASCII STL.
 pub fn is_stl(bytes: &[u8]) -> bool {
     stl::announced_size(bytes) == Some(bytes.len()) || stl::looks_ascii(bytes)
 }
@@ -330,7 +330,7 @@ impl Mesh {
         repair::mend(vertices, triangles)
     }
 
-    /// Adds the triangles of another mesh; each stays closed by itself.
+    /// Adds the triangles of another mesh; the two are not joined.
     pub fn add(&mut self, other: Self) {
         let (vertices, triangles) = (self.vertices.len() as u32, self.triangles.len() as u32);
         self.vertices.extend(other.vertices);
@@ -358,7 +358,8 @@ impl Mesh {
         self.triangles.iter().map(|&[a, b, c]| corner(a).dot(corner(b).cross(corner(c)))).sum::<f64>() / 6.0
     }
 
-    /// Scales by `factor`, turns by `degrees` about x, then y, then z, and sets the part onto z = 0. Returns where that takes points.
+    /// Scales by `factor`, turns by `degrees` about x, then y, then z, and moves the part down to z = 0. Returns that
+    /// transform.
     pub fn place(&mut self, factor: f64, degrees: DVec3) -> DAffine3 {
         let radians = degrees * std::f64::consts::PI / 180.0;
         let turn =
@@ -375,7 +376,7 @@ impl Mesh {
         DAffine3::from_mat3_translation(turn * factor, DVec3::NEG_Z * floor)
     }
 
-    /// Refuses a part that lies farther out than the 2-D grid reaches.
+    /// Refuses a part that extends beyond the 2-D grid.
     ///
     /// # Errors
     /// [`ImportError::TooFar`].

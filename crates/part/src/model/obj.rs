@@ -1,4 +1,5 @@
-//! Wavefront OBJ: vertices (`v`) and faces (`f`) of all objects and groups; textures, normals and materials are passed over.
+//! Wavefront OBJ: vertices (`v`) and faces (`f`) of all objects and groups; textures, normals and materials are
+//! skipped.
 
 use super::formats::{self, Format};
 use super::{Import, ImportError};
@@ -6,7 +7,7 @@ use crate::task::Task;
 
 pub(super) const FORMAT: Format = Format { is: looks_obj, read };
 
-/// Whether the first word that is not a comment is one of OBJ's, and a vertex follows.
+/// Whether the first word that is not a comment is an OBJ keyword, and a vertex follows.
 fn looks_obj(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(20_000)];
     let lines = || head.split(|&b| b == b'\n').map(|line| line.trim_ascii()).filter(|line| !line.is_empty());
@@ -40,7 +41,7 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
                     corners.push(index.ok_or_else(|| broken("a corner refers to a vertex that is not defined yet"))?);
                 }
                 if corners.len() < 3 {
-                    // Some programs write edges as faces.
+                    // Some programs write edges as two-cornered faces.
                     edges += 1;
                 }
                 for triangle in formats::fan(&corners) {
@@ -59,7 +60,7 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     Ok(import)
 }
 
-/// The index of the vertex that a corner refers to: `7`, `7/1`, `7//2`, `7/1/2`, or counted back from the last one, `-1`.
+/// The index of the vertex that a corner refers to: `7`, `7/1`, `7//2`, `7/1/2`, or `-1`, counted back from the last.
 fn vertex(word: &[u8], count: usize) -> Option<u32> {
     let text = std::str::from_utf8(word.split(|&b| b == b'/').next()?).ok()?;
     let number: i64 = text.parse().ok()?;

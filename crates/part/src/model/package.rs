@@ -1,7 +1,6 @@
-//! 3MF files as packages: a ZIP archive, the model file that it names, and what is required of its reader.
+//! 3MF files as packages: a ZIP archive, the model file that it names, and the extensions that it requires.
 //!
-//! Nothing is unpacked to disk, and a path only names an entry of the archive. What an archive may unpack to is
-//! bounded.
+//! Nothing is unpacked to disk, and a path only names an entry of the archive. The unpacked size is bounded.
 
 use super::ImportError;
 use super::xml::{Element, Elements, Step};
@@ -17,24 +16,24 @@ pub const OLD_TOOLPATH: &str = "http://schemas.microsoft.com/3dmanufacturing/too
 /// The namespace of the production extension.
 pub const PRODUCTION: &str = "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
 
-/// The files of an archive hold no more than this, bytes.
+/// Most bytes that the files of an archive may unpack to.
 const MOST_BYTES: u64 = 4 << 30;
-/// Nor do they hold more than this multiple of the archive, beyond what is small anyway: models unpack to 5 to 30 times their
-/// size.
+/// They may also not unpack to more than this multiple of the archive's size, unless that is small: models unpack to 5
+/// to 30 times their size.
 const MOST_TIMES: u64 = 100;
-/// What any archive may unpack to, bytes.
+/// Bytes that any archive may unpack to.
 const SMALL_BYTES: u64 = 64 << 20;
-/// An archive has no more entries than this.
+/// Most entries of an archive.
 const MOST_ENTRIES: usize = 100_000;
-/// Where the model is if the archive does not say.
+/// Path of the model if the archive does not state it.
 const USUAL: &str = "3D/3dmodel.model";
 
 /// A 3MF file that is being read.
 pub struct Package<'a> {
     archive: ZipArchive<Cursor<&'a [u8]>>,
-    /// How much may be read from it, bytes.
+    /// Bytes that may be read from it in all.
     most: u64,
-    /// How much may still be read from it, bytes.
+    /// Bytes that may still be read from it.
     left: u64,
 }
 
@@ -50,7 +49,7 @@ pub fn broken(reason: impl Into<String>) -> ImportError {
     ImportError::Broken { format: "3MF", reason: reason.into() }
 }
 
-/// A path in a 3MF file as the name of an entry in the archive.
+/// A path in a 3MF file as the name of an archive entry.
 pub fn entry_name(path: &str) -> String {
     path.trim_start_matches('/').to_owned()
 }
@@ -90,7 +89,7 @@ impl<'a> Package<'a> {
         Ok(path)
     }
 
-    /// The elements of the file at a path.
+    /// The elements of the file at a path in the archive.
     ///
     /// # Errors
     /// [`ImportError::Broken`] where it is not there.
@@ -110,7 +109,7 @@ pub fn required_extensions(model: &Element) -> Vec<String> {
     required.split_whitespace().map(|prefix| spaces.get(prefix).map_or(prefix, String::as_str).to_owned()).collect()
 }
 
-/// Refuses a file that requires what is not read.
+/// Refuses a file that requires an unsupported extension.
 ///
 /// # Errors
 /// [`ImportError::Broken`] that names the extension.
@@ -127,7 +126,7 @@ pub fn check_extensions(model: &Element, known: &[&str]) -> Result<(), ImportErr
     }
 }
 
-/// Millimetres in the unit of a model.
+/// Millimetres per unit of a model.
 ///
 /// # Errors
 /// [`ImportError::Broken`] for a unit that 3MF does not know.
@@ -144,7 +143,7 @@ pub fn unit_in_mm(model: &Element) -> Result<f64, ImportError> {
     })
 }
 
-/// How much may be read from an archive of this size, bytes.
+/// Bytes that may be read from an archive of this size.
 pub(super) fn most_of(packed: usize) -> u64 {
     (MOST_TIMES * packed as u64).clamp(SMALL_BYTES, MOST_BYTES)
 }
@@ -156,7 +155,7 @@ pub(super) fn unfolds(most: u64) -> String {
     )
 }
 
-/// Reads on until too much has been read from an archive.
+/// Reads until more than the limit has been read from an archive.
 pub struct Counted<'a, R> {
     inner: R,
     most: u64,

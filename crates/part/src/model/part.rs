@@ -1,4 +1,4 @@
-//! A model file becomes a part: a solid or the centre-lines of a wall, in mm, turned, and set onto z = 0.
+//! Turns a model file into a part: a solid or the centre-lines of a wall, in mm, turned, and standing on z = 0.
 
 use super::cut;
 use super::iges::{self, IgesError, IgesFile};
@@ -21,7 +21,7 @@ pub enum Model {
     Mesh(Import),
     /// Curves.
     Curves(IgesFile),
-    /// Outlines, which are extruded to a solid.
+    /// Outlines, to be extruded into a solid.
     Outlines(Outlines),
 }
 
@@ -43,14 +43,14 @@ pub enum Model {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Placement {
-    /// Unit of the coordinates; where it is left out, that of the file, or guessed.
+    /// Unit of the coordinates; if not given, that of the file, or a guess.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
-    /// Factor that enlarges the part.
+    /// Factor by which the part is scaled.
     pub scale: f64,
     /// Turns the part about x, then y, then z, °.
     pub turn: DVec3,
-    /// Moves the middle of the part's extent to x = y = 0.
+    /// Centres the part's extent on x = y = 0.
     pub centre: bool,
     /// Moves the part along x and y after everything else, mm.
     pub shift: DVec2,
@@ -62,7 +62,7 @@ impl Default for Placement {
     }
 }
 
-/// The part that is planned.
+/// The part to be planned.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "there is one part at a time")]
 pub enum Part {
@@ -72,7 +72,7 @@ pub enum Part {
     Curves {
         /// The curves.
         curves: WallCurves,
-        /// Where the wall ends, mm.
+        /// Height at which the wall ends, mm.
         height: f64,
         /// What was wrong with the file, as sentences.
         warnings: Vec<String>,
@@ -84,19 +84,19 @@ pub enum Part {
 pub enum PartRef<'a> {
     /// A solid that stands on z = 0.
     Mesh {
-        /// What is welded.
+        /// The solid to be welded.
         mesh: &'a Mesh,
-        /// What is milled from it afterwards ([`Import::milled`]).
+        /// The part milled from it afterwards ([`Import::milled`]).
         milled: Option<&'a Mesh>,
         /// An existing part on which it is welded.
         onto: Option<&'a Mesh>,
     },
-    /// The centre-lines of a wall, and where it ends, mm.
+    /// The centre-lines of a wall, and the height at which it ends, mm.
     Curves(&'a WallCurves, f64),
 }
 
 impl<'a> PartRef<'a> {
-    /// The same solid, welded on an existing part; curves stay as they are.
+    /// The same solid, welded onto an existing part; curves are unchanged.
     pub fn onto(self, base: &'a Mesh) -> Self {
         match self {
             Self::Mesh { mesh, milled, .. } => Self::Mesh { mesh, milled, onto: Some(base) },
@@ -137,7 +137,7 @@ impl<'a> From<&'a Mesh> for PartRef<'a> {
     }
 }
 
-/// Why a model gives no part.
+/// Why a model cannot become a part.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PartError {
@@ -156,10 +156,10 @@ pub enum PartError {
     /// A height was given for a solid.
     #[error("a height belongs to walls given by curves (IGES) and to outlines (DXF, SVG), not to a solid")]
     HeightOfSolid,
-    /// All curves or outlines lie at one height, and no height was given at which the part ends.
+    /// All curves or outlines lie at one height, and no height for the top of the part was given.
     #[error("the curves lie at one height: say how high the part is, mm")]
     NoHeight,
-    /// Nothing is left above the plane at which the part is cut.
+    /// Nothing remains above the plane at which the part is cut.
     #[error("the part is {top:.2} mm high, so nothing of it lies above {z} mm")]
     NothingAbove {
         /// Height of the part, mm.
@@ -167,7 +167,7 @@ pub enum PartError {
         /// Height of the plane, mm.
         z: f64,
     },
-    /// Curves are not cut.
+    /// Curves cannot be cut.
     #[error("a part given by curves cannot be cut by a plane; give its solid")]
     CurvesUncut,
 }
@@ -194,7 +194,7 @@ impl Model {
         Self::read_by(import, bytes, task)
     }
 
-    /// Like [`Self::read`], but takes a damaged solid as it is, with a warning; see [`import_damaged`].
+    /// Like [`Self::read`], but accepts a damaged solid as it is, with a warning; see [`import_damaged`].
     ///
     /// # Errors
     /// [`PartError`].
@@ -217,8 +217,8 @@ impl Model {
         })
     }
 
-    /// Places the model as a part. Outlines, and curves that all lie at one height, need the `height` (mm) at which the part
-    /// ends.
+    /// Places the model as a part. Outlines, and curves that all lie at one height, need the `height` (mm) of the
+    /// part's top. `bead_width` (mm) helps to guess the unit.
     ///
     /// # Errors
     /// [`PartError`].
@@ -236,7 +236,7 @@ impl Placement {
     /// A placed solid.
     ///
     /// # Errors
-    /// [`PartError::Units`] where the unit must be given, [`ImportError::TooFar`].
+    /// [`PartError::Units`] if the unit must be given, [`ImportError::TooFar`].
     pub fn solid(&self, mut import: Import, bead_width: f64) -> Result<Import, PartError> {
         let units = match self.units.or(import.units) {
             Some(units) => units,
@@ -262,10 +262,10 @@ impl Placement {
         Ok(import)
     }
 
-    /// A placed solid with an existing part on which it is welded, which is placed with it: as they lie in their files, they are one.
+    /// A placed solid and the existing part it is welded onto, placed together: in their files they share coordinates.
     ///
     /// # Errors
-    /// As of [`Self::solid`].
+    /// Those of [`Self::solid`].
     pub fn solid_onto(&self, import: Import, base: Import, bead_width: f64) -> Result<(Import, Mesh), PartError> {
         let (mesh, own) = (import.mesh.clone(), import.mesh.vertices.len());
         let mut joint = mesh.clone();
@@ -316,7 +316,7 @@ impl Placement {
         Ok(Part::Curves { curves, height, warnings })
     }
 
-    /// The wall between two edges that are not level, scaled and turned already.
+    /// The wall between two edges that are not level, already scaled and turned.
     fn between_edges(&self, mut import: Import, height: Option<f64>) -> Result<Part, PartError> {
         if height.is_some() {
             return Err(PartError::HeightOfSolid);
@@ -329,8 +329,8 @@ impl Placement {
         Ok(Part::Mesh(placed.solid(import, 0.0)?))
     }
 
-    /// The turn that lays the part flat: the largest flat face on which it can stand comes to lie at z = 0. `mesh` is
-    /// the part as placed now. Without such a face the turn stays as it is.
+    /// The turn, °, that lays the part flat: the largest flat face on which it can stand comes to lie at z = 0. `mesh`
+    /// is the part as currently placed. Without such a face the turn is unchanged.
     ///
     /// ```
     /// use bead_part::{example, model::Placement};
@@ -346,30 +346,30 @@ impl Placement {
         stand::faces(mesh).next().map_or(self.turn, |face| self.turned_onto(face))
     }
 
-    /// The turn that gives the least overhang and, where several give equally little, the lowest part, among the flat faces on
-    /// which it can stand. `mesh` is the part as placed now. Without such a face the turn stays as it is.
+    /// The turn, °, with the least overhang, among the flat faces on which the part can stand; if several are equal,
+    /// the lowest part. `mesh` is the part as currently placed. Without such a face the turn is unchanged.
     pub fn least_overhang(&self, mesh: &Mesh) -> DVec3 {
         stand::least_overhang(mesh).map_or(self.turn, |face| self.turned_onto(face))
     }
 
-    /// The turn, °, after which a face that now points along `normal` (of length 1) lies below.
+    /// The turn, °, after which a face whose normal (of length 1) is now `normal` points down.
     pub fn turned_onto(&self, normal: DVec3) -> DVec3 {
         let [x, y, z] = self.turn.map(f64::to_radians).to_array();
         let now = DMat3::from_rotation_z(z) * DMat3::from_rotation_y(y) * DMat3::from_rotation_x(x);
         let turn = DMat3::from_quat(DQuat::from_rotation_arc(normal, DVec3::NEG_Z)) * now;
         // R = Rz Ry Rx, as `Mesh::place` turns.
         let (z, y, x) = turn.to_euler(EulerRot::ZYX);
-        // Rounds, so that angles meant as whole degrees come out whole.
+        // Rounded, so that angles meant as whole degrees come out whole.
         DVec3::new(x, y, z).map(|angle| (angle.to_degrees() * 1e9).round() / 1e9)
     }
 
-    /// The placement after the part, now with the middle of its extent at `foot` (mm), was moved by `shift`
-    /// (mm) and turned by `angle` (°) about the vertical through that middle.
+    /// The placement after moving the part by `shift` (mm) and turning it by `angle` (°) about the vertical through the
+    /// middle of its extent, which is now at `foot` (mm).
     pub fn moved(&self, shift: DVec2, angle: f64, foot: DVec2) -> Self {
-        // The middle of a centred part stays by itself.
+        // The middle of a centred part is placed by `shift` alone.
         let about = if self.centre { self.shift } else { foot };
         let turned = DVec2::from_angle(angle.to_radians()).rotate(self.shift - about);
-        // Rounds, so that what is meant as whole comes out whole.
+        // Rounded, so that whole numbers come out whole.
         let shift = (about + turned + shift).map(|v| (v * 1e6).round() / 1e6);
         let z = (self.turn.z + angle + 180.0).rem_euclid(360.0) - 180.0;
         Self { shift, turn: self.turn.with_z((z * 1e9).round() / 1e9), ..*self }
@@ -382,7 +382,7 @@ impl Part {
         PartRef::from(self).bounds()
     }
 
-    /// What lies above the height `z` (mm), set onto z = 0.
+    /// The part above the height `z` (mm), moved down to z = 0.
     ///
     /// # Errors
     /// [`PartError::NothingAbove`], and [`PartError::CurvesUncut`] for curves.
@@ -390,7 +390,7 @@ impl Part {
         let Self::Mesh(import) = self else { return Err(PartError::CurvesUncut) };
         let top = import.mesh.bounds().1.z;
         let (mesh, cut) = cut::above(&import.mesh, z).ok_or(PartError::NothingAbove { top, z })?;
-        // What was repaired before the cut is still reported.
+        // Repairs made before the cut are still reported.
         let (triangles, vertices, open_edges, shells) = (cut.triangles, cut.vertices, cut.open_edges, cut.shells);
         let repair = RepairReport { triangles, vertices, open_edges, shells, ..import.repair };
         let mut milled = import.milled;
@@ -403,7 +403,7 @@ impl Part {
         Ok(Self::Mesh(Import { mesh, repair, milled, objects, ..import }))
     }
 
-    /// The solid; none for curves.
+    /// The solid; `None` for curves.
     pub fn mesh(&self) -> Option<&Mesh> {
         match self {
             Self::Mesh(import) => Some(&import.mesh),
@@ -411,7 +411,7 @@ impl Part {
         }
     }
 
-    /// Of a preform, what is milled from it.
+    /// For a preform, the part milled from it.
     pub fn milled(&self) -> Option<&Milled> {
         match self {
             Self::Mesh(import) => import.milled.as_deref(),
@@ -427,7 +427,7 @@ impl Part {
         }
     }
 
-    /// What is not read, as sentences, apart from what was repaired ([`Self::repair`]).
+    /// What was not read, as sentences, without the repairs ([`Self::repair`]).
     pub fn notes(&self) -> &[String] {
         match self {
             Self::Mesh(import) => &import.notes,
@@ -435,13 +435,13 @@ impl Part {
         }
     }
 
-    /// What was repaired or is not read, as sentences.
+    /// What was repaired or not read, as sentences.
     pub fn warnings(&self) -> Vec<String> {
         self.repair().sentences().into_iter().chain(self.notes().iter().cloned()).collect()
     }
 }
 
-/// Refuses curves that are longer or lie farther out than parts may.
+/// Refuses curves that extend farther than parts may.
 fn check_reach(file: &IgesFile, scale: f64, shift: DVec2) -> Result<(), ImportError> {
     let corners = file.curves.iter().flat_map(|curve| &curve.parts).map(|part| part.bounds());
     let reach = scale * corners.map(|(low, high)| low.abs().max(high.abs()).max_element()).fold(0.0, f64::max);

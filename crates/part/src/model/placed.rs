@@ -1,6 +1,6 @@
 //! Objects that a file places: meshes, and assemblies of other objects, each with a transform (3MF, AMF).
 //!
-//! What a file may unpack to is bounded: triangles with all copies, assemblies in assemblies.
+//! The expansion of a file is bounded: triangles including all copies, and nesting of assemblies.
 
 use super::formats::{self, Facet, MOST_TRIANGLES};
 use super::{Import, ImportError, Object, Solids, Units};
@@ -8,13 +8,13 @@ use crate::task::Task;
 use glam::{DAffine3, DVec3, Vec3};
 use std::collections::BTreeMap;
 
-/// Assemblies are nested no deeper than this.
+/// Deepest nesting of assemblies.
 const DEEPEST: usize = 32;
 
-/// Objects are matched with their solids up to this number of shells; a broken mesh has more.
+/// Objects are matched with their solids up to this number of shells; only a broken mesh has more.
 const MOST_SHELLS: usize = 100;
 
-/// A file of an archive and a number in it.
+/// A file of the archive, and the number of an object in it.
 pub(super) type Id = (String, u32);
 
 /// What an object consists of.
@@ -26,7 +26,7 @@ pub(super) enum Shape {
 /// An object of the file.
 pub(super) struct Resource {
     pub(super) name: String,
-    /// Whether it is part of what is to be built: supports are not.
+    /// Whether it is part of what is to be built, which supports are not.
     pub(super) solid: bool,
     pub(super) shape: Shape,
 }
@@ -36,7 +36,7 @@ pub(super) struct Resources {
     pub(super) objects: BTreeMap<Id, Resource>,
     /// What is built.
     pub(super) items: Vec<(Id, DAffine3)>,
-    /// mm.
+    /// Millimetres per unit.
     pub(super) unit: f64,
     format: &'static str,
     triangles: usize,
@@ -47,13 +47,13 @@ impl Resources {
         Self { objects: BTreeMap::new(), items: Vec::new(), unit: 1.0, format, triangles: 0 }
     }
 
-    /// One more triangle was read.
+    /// Counts one triangle; fails above the limit.
     pub(super) fn count_triangle(&mut self) -> Result<(), ImportError> {
         self.triangles += 1;
         if self.triangles > MOST_TRIANGLES { Err(self.too_many()) } else { Ok(()) }
     }
 
-    /// Puts the items together.
+    /// Assembles the items into one mesh.
     pub(super) fn build(&self, task: &Task) -> Result<Import, ImportError> {
         let (mut counts, mut sum) = (BTreeMap::new(), 0_usize);
         for (id, _) in &self.items {
@@ -98,7 +98,7 @@ impl Resources {
         self.broken(format!("it has more than {MOST_TRIANGLES} triangles, with all copies"))
     }
 
-    /// The triangles of an object with all its parts, each object counted once.
+    /// The number of triangles of an object with all its parts; known objects are looked up.
     fn count(&self, id: &Id, depth: usize, counts: &mut BTreeMap<Id, usize>) -> Result<usize, ImportError> {
         if let Some(known) = counts.get(id) {
             return Ok(*known);
@@ -125,7 +125,7 @@ impl Resources {
         Ok(sum)
     }
 
-    /// Adds the triangles of an object and of its parts, which [`Self::count`] has checked.
+    /// Adds the triangles of an object and its parts, which [`Self::count`] has checked.
     fn lay(&self, id: &Id, at: &DAffine3, facets: &mut Vec<Facet>) -> Result<(), ImportError> {
         let Some(object) = self.objects.get(id).filter(|object| object.solid) else { return Ok(()) };
         match &object.shape {

@@ -1,4 +1,4 @@
-//! PLY, as text or binary: the vertices and faces; colours and anything else are passed over.
+//! PLY, as text or binary: the vertices and faces; colours and everything else are skipped.
 
 use super::formats::{self, Format};
 use super::{Import, ImportError};
@@ -13,7 +13,7 @@ pub(super) const FORMAT: Format =
 /// x, y, z.
 struct Vertex([f32; 3]);
 
-/// Numbers of the corners.
+/// Indices of the corners.
 struct Face(Vec<u32>);
 
 impl PropertyAccess for Vertex {
@@ -63,10 +63,10 @@ impl PropertyAccess for Face {
     }
 }
 
-/// The points of a PLY file, in the units of the file, and triangles between them where it has faces. Nothing is repaired.
+/// The points of a PLY file, in units of the file, and the triangles between them if it has faces. Nothing is repaired.
 ///
 /// # Errors
-/// [`ImportError::Broken`] with what cannot be read.
+/// [`ImportError::Broken`] saying what cannot be read.
 pub fn points(bytes: &[u8], task: &Task) -> Result<(Vec<DVec3>, Vec<[u32; 3]>), ImportError> {
     let (vertices, faces) = elements(bytes, task)?;
     let triangles: Vec<_> = faces.iter().flat_map(|Face(corners)| formats::fan(corners)).collect();
@@ -99,7 +99,7 @@ fn elements(bytes: &[u8], task: &Task) -> Result<(Vec<Vertex>, Vec<Face>), Impor
     let header = Parser::<DefaultElement>::new().read_header(&mut reader).map_err(broken)?;
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for (name, element) in &header.elements {
-        // Each value takes at least a byte, so a count beyond the file is false.
+        // Each value takes at least one byte, so a count beyond the file's size is wrong.
         if element.count > bytes.len() {
             return Err(broken(format!("it announces {} of \"{name}\", but has {} bytes", element.count, bytes.len())));
         }

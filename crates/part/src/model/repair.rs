@@ -1,4 +1,4 @@
-//! Finds what is wrong with a mesh and repairs what needs no guess: nothing is moved by more than the width of a crack.
+//! Finds faults in a mesh and repairs those that need no guess: nothing moves by more than the width of a crack.
 //!
 //! 1. degenerate triangles are removed;
 //! 2. vertices on open edges that lie within 1e-5 of the part's diagonal are merged (cracks from rounding);
@@ -120,13 +120,13 @@ pub(crate) fn mend(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> (Mesh, Rep
     (mesh, report)
 }
 
-/// Turns one triangle over, its neighbours with it.
+/// Reverses one triangle, its neighbours with it.
 fn turn(triangle: &mut [u32; 3], neighbours: &mut [u32; 3]) {
     triangle.swap(1, 2);
     neighbours.swap(0, 2);
 }
 
-/// Keeps only the vertices of triangles, in their order, so that bounds are those of the surface.
+/// Drops vertices that no triangle uses and keeps the others in order, so that bounds are those of the surface.
 fn drop_unused_vertices(mesh: &mut Mesh) {
     let mut used: Vec<u32> = mesh.triangles.as_flattened().to_vec();
     used.sort_unstable();
@@ -160,7 +160,7 @@ fn mend_edges(mesh: &mut Mesh, mut adjacency: Adjacency, report: &mut RepairRepo
     adjacency
 }
 
-/// Welds vertices of open edges that lie within the crack width of one another; returns how many moved.
+/// Welds vertices of open edges that lie within the crack width of each other; returns how many moved.
 fn merge_cracks(mesh: &mut Mesh, odd_edges: &[Vec<HalfEdge>]) -> usize {
     let tolerance = mesh.size().length() * CRACK;
     let open = odd_edges.iter().filter(|edge| edge.iter().filter(|h| h.forward).count() * 2 != edge.len());
@@ -194,8 +194,8 @@ fn merge_cracks(mesh: &mut Mesh, odd_edges: &[Vec<HalfEdge>]) -> usize {
     target.len()
 }
 
-/// Removes duplicate triangles. Two faces back to back stay when they separate two solids that touch, that is when each
-/// of their edges has further triangles in both directions.
+/// Removes duplicate triangles. Two faces back to back are kept when they separate two solids that touch, that is, when
+/// each of their edges has further triangles in both directions.
 fn drop_duplicates(mesh: &mut Mesh, odd_edges: &[Vec<HalfEdge>]) -> usize {
     let mut edges_of: HashMap<u32, usize> = HashMap::new();
     for edge in odd_edges {
@@ -213,7 +213,7 @@ fn drop_duplicates(mesh: &mut Mesh, odd_edges: &[Vec<HalfEdge>]) -> usize {
         let mut key = triangle;
         key.sort_unstable();
         let separates_solids = edges_of[&t] == 3;
-        // With three clean edges the two sides of a wall count as two different faces.
+        // With three balanced edges, the two sides of a wall count as different faces.
         let key = if separates_solids && !even(triangle) { [key[0], key[2], key[1]] } else { key };
         if !seen.insert(key) {
             drop.insert(t);
@@ -227,7 +227,7 @@ fn drop_duplicates(mesh: &mut Mesh, odd_edges: &[Vec<HalfEdge>]) -> usize {
     drop.len()
 }
 
-/// Whether the corners ascend up to rotation.
+/// Whether the corners are an even permutation of their sorted order.
 fn even([a, b, c]: [u32; 3]) -> bool {
     (a < b) as u8 + ((b < c) as u8) + ((c < a) as u8) == 2
 }
@@ -245,12 +245,12 @@ fn turn_to_majority(mesh: &mut Mesh, adjacency: &mut Adjacency, flipped: &mut us
         }
     }
     let count = mesh.triangles.len();
-    // One extra place means "no neighbour": always visited, so the walk needs no branch that is hard to predict.
+    // One extra entry stands for "no neighbour": always visited, so the walk needs no unpredictable branch.
     let mut visited = vec![false; count + 1];
     visited[count] = true;
     let mut turned = vec![false; if against.is_empty() { 0 } else { count }];
     let (mut shells, mut any_turned) = (0, false);
-    // All triangles, shell by shell; the place at `end` is written before it is known whether it counts.
+    // All triangles, shell by shell; the entry at `end` is written before it is known whether it counts.
     let mut found = vec![0; count + 1];
     let mut end = 0;
     for seed in 0..count {

@@ -1,4 +1,4 @@
-//! Outlines become closed triangle meshes, wound counter-clockwise seen from outside.
+//! Turns outlines into closed triangle meshes, wound counter-clockwise seen from outside.
 
 use glam::{DVec2, DVec3};
 use planar::triangulate::triangulate_by_edges;
@@ -22,7 +22,7 @@ impl Solid {
     }
 
     /// A body whose outline at each height of `levels` (mm, ascending) is `base` with its points moved by
-    /// `place(point, height)`. The motion must leave the outline free of crossings, as turning and scaling do.
+    /// `place(point, height)`. The moved outline must not cross itself; turning and scaling are safe.
     pub fn loft(base: &Polygon, levels: &[f64], place: impl Fn(DVec2, f64) -> DVec2) -> Self {
         let points: Vec<DVec2> = base.rings().flat_map(Ring::points).copied().collect();
         let vertices = levels.iter().flat_map(|&z| points.iter().map(move |&p| (p, z)));
@@ -39,8 +39,8 @@ impl Solid {
         solid
     }
 
-    /// The body that the closed loop `profile` of (radius, height), mm, sweeps around the z axis in `segments`
-    /// steps. Points on the axis have radius 0.
+    /// The body that the closed loop `profile` of (radius, height), mm, sweeps around the z axis in `segments` steps.
+    /// Points on the axis have radius 0.
     pub fn revolve(profile: &[DVec2], segments: u32) -> Self {
         let profile = Polygon::simple(Ring::new(profile.to_vec())).outer.into_points();
         let mut solid = Self::default();
@@ -57,7 +57,7 @@ impl Solid {
         solid
     }
 
-    /// Merges vertices at the same position (to 1 nm) and drops the triangles that are left without an area.
+    /// Merges vertices at the same position (to 1 nm) and drops triangles left without an area.
     pub fn welded(self) -> Self {
         let mut numbers = HashMap::new();
         let mut welded = Self::default();
@@ -94,7 +94,8 @@ impl Solid {
         }
     }
 
-    /// Vertices on the circle that `p` (radius, height) sweeps, a single one on the axis; returns the first index.
+    /// Adds the vertices of the circle that `p` (radius, height) sweeps, a single one if on the axis; returns the first
+    /// index.
     fn circle(&mut self, p: DVec2, segments: u32) -> u32 {
         let first = self.vertices.len() as u32;
         let count = if p.x == 0.0 { 1 } else { segments };

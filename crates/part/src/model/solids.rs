@@ -8,7 +8,7 @@ use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use std::collections::{BTreeSet, HashMap};
 use std::f64::consts::TAU;
 
-/// A mesh divided into its solids, which are numbered in the order of their first triangles.
+/// A mesh divided into its solids, numbered in the order of their first triangles.
 ///
 /// ```
 /// use bead_part::{example, model::Solids};
@@ -26,7 +26,7 @@ use std::f64::consts::TAU;
 /// ```
 pub struct Solids<'a> {
     mesh: &'a Mesh,
-    /// Of each triangle.
+    /// The solid of each triangle.
     solid: Vec<usize>,
     count: usize,
     tree: RTree<Face>,
@@ -45,29 +45,29 @@ impl<'a> Solids<'a> {
         let solid: Vec<usize> = shell.into_iter().map(&mut numbered).collect();
         let face = |(t, &solid): (usize, &usize)| Face { triangle: Triangle::of(mesh, t), solid };
         let faces = solid.iter().enumerate().map(face).filter(|face| face.triangle.normal().length_squared() > 0.0);
-        // Of one, there is nothing to find.
+        // A single solid needs no search.
         let tree = RTree::bulk_load(if number.len() > 1 { faces.collect() } else { Vec::new() });
         Self { mesh, count: number.len(), solid, tree }
     }
 
-    /// How many there are.
+    /// Number of solids.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// The one whose surface lies nearest to a point.
+    /// The solid whose surface is nearest to a point.
     pub fn nearest(&self, point: DVec3) -> Option<usize> {
         let single = Some(0).filter(|_| self.count == 1);
         single.or_else(|| self.tree.nearest_neighbor(&point.to_array()).map(|face| face.solid))
     }
 
-    /// Those of the given numbers as a mesh.
+    /// The solids with the given numbers as one mesh.
     pub fn mesh(&self, numbers: &[usize]) -> Mesh {
         let kept: Vec<usize> = (0..self.solid.len()).filter(|t| numbers.contains(&self.solid[*t])).collect();
         self.of_triangles(&kept)
     }
 
-    /// Each by itself.
+    /// Each solid as its own mesh.
     pub fn each(&self) -> impl Iterator<Item = Mesh> + '_ {
         let mut triangles = vec![Vec::new(); self.count];
         self.solid.iter().enumerate().for_each(|(t, solid)| triangles[*solid].push(t));
@@ -91,7 +91,7 @@ impl<'a> Solids<'a> {
         Mesh { vertices, triangles, neighbours }
     }
 
-    /// A point on the surface of one that lies on no other, where there is one, so that [`Self::nearest`] finds it again.
+    /// A point on the surface of a solid, away from all others if possible, so that [`Self::nearest`] finds it again.
     pub fn point(&self, number: usize) -> Option<DVec3> {
         if self.count == 1 {
             return self.mesh.triangles.first().map(|_| Triangle::of(self.mesh, 0).middle());
@@ -129,12 +129,12 @@ impl<'a> Solids<'a> {
     }
 }
 
-/// Number of places that are tried for a point of a solid.
+/// Points tried on the surface of a solid.
 const TRIED: usize = 200;
-/// A place lies on another solid if it is as near to it as this part of the mesh's size.
+/// A point is on another solid if it is within this fraction of the mesh's size.
 const BESIDE: f64 = 1e-4;
 
-/// The shell of each triangle, and how many there are.
+/// The shell of each triangle, and the number of shells.
 fn shells(mesh: &Mesh) -> (Vec<usize>, usize) {
     let mut shell = vec![usize::MAX; mesh.triangles.len()];
     let (mut count, mut open) = (0, Vec::new());
@@ -156,7 +156,7 @@ fn shells(mesh: &Mesh) -> (Vec<usize>, usize) {
     (shell, count)
 }
 
-/// For each shell the one to whose solid it belongs: a cavity to the smallest shell around it, others to themselves.
+/// For each shell the one whose solid it belongs to: a cavity to the smallest shell around it, others to themselves.
 fn owners(mesh: &Mesh, shell: &[usize], count: usize) -> Vec<usize> {
     let (mut volume, mut corners) = (vec![0.0; count], vec![0; count]);
     let mut bounds = vec![(DVec3::INFINITY, DVec3::NEG_INFINITY); count];
@@ -173,7 +173,7 @@ fn owners(mesh: &Mesh, shell: &[usize], count: usize) -> Vec<usize> {
         GeomWithData::new(Rectangle::from_corners(low.to_array(), high.to_array()), shell)
     });
     let boxes = RTree::bulk_load(boxes.collect());
-    // Cavities are few, and few boxes hold them.
+    // There are few cavities, and few boxes contain them.
     let is_inside = |p: DVec3, outer: usize| {
         let own = shell.iter().enumerate().filter(|(_, shell)| **shell == outer);
         own.map(|(t, _)| Triangle::of(mesh, t).solid_angle(p)).sum::<f64>() > TAU
@@ -190,7 +190,7 @@ fn owners(mesh: &Mesh, shell: &[usize], count: usize) -> Vec<usize> {
     (0..count).map(owner).collect()
 }
 
-/// A triangle of a solid.
+/// A triangle and the solid it belongs to.
 struct Face {
     triangle: Triangle,
     solid: usize,

@@ -1,4 +1,4 @@
-//! On which flat faces a part can stand, and how much of it then overhangs.
+//! The flat faces on which a part can stand, and how much of it then overhangs.
 
 use super::Mesh;
 use glam::DVec3;
@@ -11,7 +11,7 @@ const SAME_NORMAL: f64 = 1e-3;
 /// Areas that differ by less than this, in squared extents of the part, are equal.
 const SAME_AREA: f64 = 1e-6;
 
-/// The part stands on a face if no point is farther below it than this, in extents of the part.
+/// The part stands on a face if no point is farther below the face than this, in extents of the part.
 const STANDING: f64 = 1e-3;
 
 /// Number of faces examined, largest first.
@@ -31,7 +31,7 @@ pub fn faces(mesh: &Mesh) -> impl Iterator<Item = DVec3> + '_ {
         face.0 += doubled.length() / 2.0;
     }
     let mut faces: Vec<_> = faces.into_iter().collect();
-    // Faces of equal size have a fixed order, which rounding, for example after a shift, does not change.
+    // Faces of equal size are put in a fixed order that rounding, for example after a shift, does not change.
     let size = |area: f64| (area / (SAME_AREA * extent * extent)).round() as i64;
     faces.sort_by_key(|&([x, y, z, height], (area, ..))| (Reverse(size(area)), z, y, x, height));
     let stands = move |&(_, normal, height): &(f64, DVec3, f64)| {
@@ -46,7 +46,7 @@ const STEEP: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Overhangs that differ by less than this fraction of the surface are equal.
 const ALIKE: f64 = 0.01;
 
-/// The face to stand on that leaves the least overhang and, where several leave equally little, the lowest part.
+/// The face to stand on with the least overhang; if several are equal, the one with the lowest part.
 pub(super) fn least_overhang(mesh: &Mesh) -> Option<DVec3> {
     let surface: f64 = mesh.triangles.iter().map(|corners| across(mesh, corners).1.length() / 2.0).sum();
     let judged = faces(mesh).map(|down| (overhang(mesh, down), extent_along(mesh, down), down));
@@ -59,7 +59,7 @@ pub(super) fn least_overhang(mesh: &Mesh) -> Option<DVec3> {
         .map(|(.., down)| down)
 }
 
-/// Area (mm²) of what overhangs by more than 45° if `down` points down; what lies on the plate does not count.
+/// Area (mm²) that overhangs by more than 45° if `down` points down; what lies on the plate does not count.
 pub fn overhang(mesh: &Mesh, down: DVec3) -> f64 {
     let plate = mesh.vertices.iter().map(|v| down.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
     let off = STANDING * mesh.size().max_element();
@@ -76,7 +76,7 @@ fn extent_along(mesh: &Mesh, down: DVec3) -> f64 {
     high - low
 }
 
-/// A corner of a triangle, and its normal, whose length is twice its area.
+/// A corner of a triangle, and its normal, of twice its area in length.
 fn across(mesh: &Mesh, corners: &[u32; 3]) -> (DVec3, DVec3) {
     let [a, b, c] = corners.map(|i| mesh.vertices[i as usize]);
     (a, (b - a).cross(c - a))

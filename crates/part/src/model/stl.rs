@@ -13,8 +13,8 @@ pub(super) const FORMAT: Format = Format { is: |_| true, read };
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// A binary STL file of triangles with their corners counter-clockwise seen from outside; `name` is in its header, up to
-/// 80 bytes of it. Coordinates are written with 24 bits.
+/// A binary STL file of triangles, corners counter-clockwise seen from outside; up to 80 bytes of `name` go into its
+/// header. Coordinates have single precision (24 bits).
 pub fn write(name: &str, triangles: impl Iterator<Item = [DVec3; 3]>) -> Vec<u8> {
     let mut bytes = name.as_bytes().to_vec();
     bytes.resize(HEADER, 0);
@@ -58,7 +58,7 @@ pub fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
         }
         Some(size) if size < length && size > HEADER && plausible(&bytes[HEADER..]) => {
             let (announced, more) = ((size - HEADER) / RECORD, (length - size) / RECORD);
-            // Either the count is wrong and further triangles follow, or a program has appended data of its own.
+            // Either the count is wrong and more triangles follow, or a program has appended data of its own.
             let next = &bytes[size..length.min(size + RECORD)];
             let counted_wrong = plausible(next) && next[..48].iter().any(|&byte| byte != 0);
             let damage = format!("bytes 80–83 announce {announced} triangles, but {more} more follow");
@@ -87,7 +87,7 @@ pub(super) fn announced_size(bytes: &[u8]) -> Option<usize> {
     Some(HEADER + RECORD * count as usize)
 }
 
-/// Whether a record holds numbers of a usual size, as random bytes hardly ever do.
+/// Whether a record holds numbers of a usual magnitude, which random bytes hardly ever do.
 fn plausible(record: &[u8]) -> bool {
     let Some(facet) = record.get(..48) else { return false };
     let mut numbers = facet.as_chunks::<4>().0.iter().map(|b| f32::from_le_bytes(*b));
@@ -132,8 +132,8 @@ fn damaged(mut import: Import, damage: Option<String>) -> Result<Import, ImportE
 
 type Parsed = (Vec<Facet>, Vec<u32>, Option<String>);
 
-/// Facets, the line on which each begins, and what is missing at the end. Names of solids may be any bytes; several solids
-/// may follow.
+/// Facets, the line on which each begins, and what is missing at the end. Names of solids may be any bytes; there may
+/// be several solids.
 fn parse_ascii(bytes: &[u8], task: &Task) -> Result<Parsed, ImportError> {
     let (mut facets, mut lines): (Vec<Facet>, Vec<u32>) = (Vec::new(), Vec::new());
     let mut open: Option<([f32; 3], Vec<[f32; 3]>)> = None;
@@ -153,7 +153,7 @@ fn parse_ascii(bytes: &[u8], task: &Task) -> Result<Parsed, ImportError> {
             if open.is_some() {
                 return Err(error("a facet begins before the last one has ended (endfacet is missing)".to_owned()));
             }
-            // The normal is not needed: a missing or broken one is no reason to refuse the part.
+            // The normal is not needed, so a missing or broken one is no reason to refuse the part.
             let normal = triple(words.skip(1)).unwrap_or_default();
             open = Some((normal, Vec::with_capacity(3)));
             in_solid = true;

@@ -1,8 +1,7 @@
 //! 3MF: the core specification with build transforms, components and several objects, and the production extension's parts
 //! in several files.
 //!
-//! What an archive may unpack to is bounded: bytes of its model files, triangles with all copies, components in
-//! components.
+//! The unpacked size is bounded: bytes of the model files, triangles including all copies, nesting of components.
 
 use super::formats::Format;
 use super::package::{self, Package, broken, entry_name};
@@ -14,7 +13,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 pub(super) const FORMAT: Format = Format { is: package::is_package, read };
 
-/// Extensions that a file may require: they change neither shape nor place.
+/// Extensions that a file may require because they change neither shape nor placement.
 const KNOWN: [&str; 4] = [
     "http://schemas.microsoft.com/3dmanufacturing/core/2015/02",
     package::PRODUCTION,
@@ -39,7 +38,7 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     resources.build(task)
 }
 
-/// Reads a model file of the archive; returns the other files that it names.
+/// Reads a model file of the archive; returns the other files that it refers to.
 fn read_model(
     package: &mut Package<'_>,
     path: &str,
@@ -119,7 +118,7 @@ fn read_model(
     Ok(others)
 }
 
-/// The transform of a component or item: twelve numbers, the rows of a matrix that is applied to row vectors.
+/// The transform of a component or item: twelve numbers, the rows of a matrix applied to row vectors.
 fn transform(element: &Element) -> Result<DAffine3, ImportError> {
     let Some(text) = element.attribute("transform") else { return Ok(DAffine3::IDENTITY) };
     let numbers: Vec<f64> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();

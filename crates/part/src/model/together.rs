@@ -7,12 +7,12 @@ use planar::Bounds;
 /// How several parts are placed on a plate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Arrangement {
-    /// In rows from x = y = 0 on, this far apart, mm.
+    /// In rows starting at x = y = 0.
     Rows {
-        /// Distance between their extents, mm.
+        /// Gap between their extents, mm.
         gap: f64,
     },
-    /// Where they are.
+    /// At their own coordinates.
     AsTheyAre,
 }
 
@@ -77,7 +77,7 @@ fn extent(mesh: &Mesh) -> Bounds {
     Bounds { min: low.truncate(), max: high.truncate() }
 }
 
-/// How far each part moves to its place in the rows: the deepest first, rows about as long as all of them are deep.
+/// How far each part moves to its place in the rows: the deepest first, in rows about as long as all of them are deep.
 fn rows(extents: &[Bounds], gap: f64) -> Vec<DVec2> {
     let size = |index: usize| extents[index].size() + gap;
     let mut order: Vec<usize> = (0..extents.len()).collect();
@@ -103,7 +103,7 @@ fn crowded(places: &[Place]) -> Option<(String, String)> {
     pairs.into_iter().find(|(a, b)| overlap(&a.1, &b.1)).map(|(a, b)| (a.0.clone(), b.0.clone()))
 }
 
-/// Two solids as one; each stays closed by itself.
+/// Two solids as one import; the meshes are not joined.
 fn joined(mut first: Import, second: Import) -> Import {
     first.mesh.add(second.mesh);
     match (&mut first.milled, second.milled) {

@@ -1,11 +1,11 @@
-//! A triangle of a mesh by itself: how near a point lies to it.
+//! A single triangle of a mesh: its distance from a point, its normal and angles.
 
 use super::Mesh;
 use glam::DVec3;
 use rstar::{AABB, PointDistance, RTreeObject};
 use std::f64::consts::{PI, TAU};
 
-/// Places that are nearer to each other count as one, mm.
+/// Points nearer to each other than this are one, mm.
 pub(crate) const SAME_MM: f64 = 1e-6;
 
 /// A triangle, wound counter-clockwise seen from outside.
@@ -28,20 +28,20 @@ impl Triangle {
         [[a, b], [b, c], [c, a]]
     }
 
-    /// Points outside; its length is twice the area, mm².
+    /// The outward normal; its length is twice the area, mm².
     pub(crate) fn normal(&self) -> DVec3 {
         let [a, b, c] = self.corners;
         (b - a).cross(c - a)
     }
 
-    /// The solid angle that it takes up seen from a point, sr; above 0 where its back is seen (Van Oosterom and Strackee 1983).
+    /// The solid angle it subtends from a point, sr; positive where its back is seen (Van Oosterom and Strackee 1983).
     pub(crate) fn solid_angle(&self, from: DVec3) -> f64 {
         let [a, b, c] = self.corners.map(|corner| corner - from);
         let [x, y, z] = [a, b, c].map(DVec3::length);
         2.0 * a.dot(b.cross(c)).atan2(x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y)
     }
 
-    /// The place of the triangle that is nearest to a point.
+    /// The point of the triangle nearest to a point.
     pub(crate) fn closest(&self, point: DVec3) -> DVec3 {
         let (normal, edges) = (self.normal(), self.edges());
         if edges.iter().all(|[a, b]| normal.dot((b - a).cross(point - a)) >= 0.0) {
@@ -53,7 +53,7 @@ impl Triangle {
         })
     }
 
-    /// The angle of the triangle around one of its places: a full turn inside it, half a turn on an edge.
+    /// The triangle's angle at one of its points, rad: a full turn inside, half a turn on an edge.
     pub(crate) fn angle_at(&self, spot: DVec3) -> f64 {
         let [a, b, c] = self.corners;
         let corner = [[a, b, c], [b, c, a], [c, a, b]].into_iter().find(|[at, ..]| at.distance(spot) < SAME_MM);
@@ -65,7 +65,7 @@ impl Triangle {
     }
 }
 
-/// The place of an edge that is nearest to a point.
+/// The point of an edge nearest to a point.
 fn on_edge([from, to]: [DVec3; 2], point: DVec3) -> DVec3 {
     let along = to - from;
     let part = (point - from).dot(along) / along.length_squared();

@@ -1,4 +1,4 @@
-//! STL has no units. Millimetres are assumed unless the part would then be smaller than a few beads.
+//! STL has no units. Millimetres are assumed, unless the part would then be smaller than a few beads.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -24,11 +24,11 @@ pub enum Units {
 const MIN_BEADS: f64 = 3.0;
 
 impl Units {
-    /// All of them with the names people type.
+    /// All units with the names that people type.
     pub const ALL: [(&'static str, Self); 4] =
         [("mm", Self::Millimetre), ("cm", Self::Centimetre), ("m", Self::Metre), ("in", Self::Inch)];
 
-    /// The unit in the plural: `inches`.
+    /// The unit's name in the plural: `inches`.
     pub fn plural(self) -> &'static str {
         match self {
             Self::Millimetre => "millimetres",
@@ -38,7 +38,7 @@ impl Units {
         }
     }
 
-    /// Millimetres in one unit.
+    /// Millimetres per unit.
     pub fn in_mm(self) -> f64 {
         match self {
             Self::Millimetre => 1.0,
@@ -49,7 +49,7 @@ impl Units {
     }
 }
 
-/// The part is so small for this bead that its unit must be another one.
+/// The part is so small for this bead that its unit is probably another one.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
     "the part measures {} in the file's units. As millimetres it would be smaller than {MIN_BEADS} beads of {bead_width} mm. \
@@ -69,7 +69,7 @@ fn size_text(size: DVec3, factor: f64) -> String {
     format!("{:.digits$} × {:.digits$} × {:.digits$}", s.x, s.y, s.z)
 }
 
-/// Asks for the unit when the part, taken as millimetres, is narrower than three beads in x and y.
+/// Returns millimetres, unless the part would then be narrower than three beads in x and y.
 ///
 /// # Errors
 /// [`UnitsUnclear`], whose text gives the sizes in the other units.

@@ -1,4 +1,4 @@
-//! What the readers of XML files share: elements one after another, with their attributes, in bounded memory.
+//! Common to the readers of XML files: elements in sequence, with their attributes, in bounded memory.
 
 use super::ImportError;
 use quick_xml::events::{BytesStart, Event};
@@ -13,9 +13,9 @@ pub struct Elements<R> {
     depth: usize,
 }
 
-/// What comes next in the file; names without their prefix.
+/// The next item of the file; names have no prefix.
 pub enum Step {
-    /// An element begins; one without content has no end of its own.
+    /// An element begins; an empty one has no end of its own.
     Begin(Element),
     /// An element ends.
     End(String),
@@ -26,7 +26,7 @@ pub enum Step {
 /// The beginning of an element.
 pub struct Element(BytesStart<'static>);
 
-/// Elements are nested no deeper than this.
+/// Deepest nesting of elements.
 const DEEPEST: usize = 256;
 
 impl<R: BufRead> Elements<R> {
@@ -75,13 +75,13 @@ impl Element {
         self.0.local_name().into_inner()
     }
 
-    /// The attribute of this name, whatever its prefix.
+    /// The attribute of this name, with any prefix.
     pub fn attribute(&self, name: &str) -> Option<String> {
         let own = |key: &str| key.rsplit(':').next() == Some(name);
         self.attributes().into_iter().find(|(key, _)| own(key)).map(|(_, value)| value)
     }
 
-    /// The attributes with their whole names, prefix included.
+    /// The attributes with their full names, prefix included.
     pub fn attributes(&self) -> Vec<(String, String)> {
         let mut found = Vec::new();
         for attribute in self.0.attributes().with_checks(false).flatten() {

@@ -1,4 +1,4 @@
-//! Open contours of a broken mesh: ends that lie within the gap are joined, nearest pair first.
+//! Closes open contours of a broken mesh: ends within the gap are joined, nearest pair first.
 
 use glam::DVec2;
 use planar::Ring;
@@ -15,7 +15,8 @@ struct End {
     last: bool,
 }
 
-/// Joins open chains into rings, and returns what stays open. `report` is called with every gap: a place and its width, mm.
+/// Joins open chains into rings, and returns the chains still open. `report` is called for each gap, with its position
+/// and width, mm.
 pub(super) fn close(
     chains: Vec<Vec<DVec2>>,
     gap: f64,
@@ -34,7 +35,7 @@ pub(super) fn close(
         }
     }
     let (mut used, mut open) = (vec![false; chains.len()], Vec::new());
-    // Chains with a loose end first: they cannot become rings.
+    // Chains with a loose end first, because they cannot become rings.
     let loose = |i: &usize| partner[*i].iter().any(Option::is_none);
     for start in (0..chains.len()).filter(loose) {
         if !used[start] {
@@ -56,7 +57,7 @@ fn point(chains: &[Vec<DVec2>], end: End) -> DVec2 {
     chain[if end.last { chain.len() - 1 } else { 0 }]
 }
 
-/// Pairs of ends within the gap, nearest first; an end goes before a start of the same distance, as the winding requires.
+/// Pairs of ends within the gap, nearest first; at the same distance an end precedes a start, as the winding requires.
 fn candidate_pairs(chains: &[Vec<DVec2>], gap: f64) -> Vec<(f64, End, End)> {
     let ends = (0..chains.len()).flat_map(|chain| [false, true].map(|last| End { chain, last }));
     let items: Vec<_> = ends.map(|e| GeomWithData::new(point(chains, e).to_array(), e)).collect();
@@ -77,7 +78,7 @@ fn candidate_pairs(chains: &[Vec<DVec2>], gap: f64) -> Vec<(f64, End, End)> {
     pairs
 }
 
-/// Walks from chain to chain, entering the first at `enter`, until a loose end or a chain already used.
+/// Walks from chain to chain, entering the first at `enter`, until a loose end or a used chain.
 fn follow(chains: &[Vec<DVec2>], partner: &[[Option<End>; 2]], enter: End, used: &mut [bool]) -> Vec<DVec2> {
     let mut points = Vec::new();
     let mut at = Some(enter);

@@ -1,10 +1,10 @@
 //! A mesh cut into layers of equal thickness.
 //!
-//! Layer k fills the heights k·h … (k+1)·h and is cut at its middle. Every vertex knows its level, the number of
-//! planes that are not above it; a triangle is crossed by the planes between its lowest and its highest level, so
-//! the cost grows with triangles plus segments. On each plane the contour walks from triangle to triangle across
-//! shared edges (Zhao et al. 2023, section 1: slicing by triangle adjacency), and no point is ever searched for.
-//! A vertex exactly on a plane counts as above it, for all its triangles alike.
+//! Layer k spans the heights k·h … (k+1)·h and is cut at its middle. Every vertex knows its level, the number of planes
+//! at or below it; a triangle is crossed by the planes between its lowest and its highest level, so the cost grows with
+//! triangles plus segments. On each plane the contour walks from triangle to triangle across shared edges (Zhao et al.
+//! 2023, section 1: slicing by triangle adjacency), and no point is ever searched for. A vertex exactly on a plane
+//! counts as above it, for all its triangles alike.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -27,7 +27,7 @@ use std::ops::Range;
 use std::sync::Mutex;
 use trace::{Cut, Scratch, Trace};
 
-/// Layers cut together, so that memory stays proportional to the mesh.
+/// Layers cut in one batch, so that memory stays proportional to the mesh.
 pub const BATCH: usize = 32;
 
 /// How to cut.
@@ -37,7 +37,7 @@ pub struct SliceOptions {
     pub layer_height: f64,
     /// Widest gap in an open contour that is bridged, mm.
     pub close_gap: f64,
-    /// Contour vertices within this distance of the line that remains are dropped, mm.
+    /// Contour vertices within this distance of the simplified line are dropped, mm.
     pub simplify: f64,
 }
 
@@ -50,9 +50,9 @@ pub struct Slice {
     pub z: f64,
     /// Thickness, mm.
     pub height: f64,
-    /// Which of two layers with the same underside it is.
+    /// Whether it is one of two layers with the same underside, and which.
     pub half: Option<Half>,
-    /// Connected pieces with their holes.
+    /// Connected areas with their holes.
     pub islands: Vec<Polygon>,
     /// What was closed, dropped or united here.
     pub warnings: Vec<Warning>,
@@ -65,7 +65,8 @@ impl Slice {
     }
 }
 
-/// Of two layers with the same underside, the lower covers what of them is too thick for one bead.
+/// Two layers share an underside where a layer varies in thickness: the lower one covers what is too thick for one
+/// bead.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Half {
@@ -75,7 +76,7 @@ pub enum Half {
     Upper,
 }
 
-/// Height of a layer's middle, mm; of two layers with the same underside, that of the pair.
+/// Height of a layer's middle, mm; for two layers with the same underside, the middle of the pair.
 pub fn middle(z: f64, height: f64, half: Option<Half>) -> f64 {
     match half {
         Some(Half::Lower) => z,
@@ -93,7 +94,7 @@ impl Half {
     }
 }
 
-/// Where a layer lies.
+/// Height range of a layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slab {
     /// Top of the layer, mm.
@@ -115,28 +116,28 @@ pub struct Lines {
     pub warnings: Vec<Warning>,
 }
 
-/// What a surface that is not closed represents.
+/// What an open surface represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Surface {
-    /// The skin of a solid: what its contours enclose is filled, and those that do not close are left out.
+    /// The skin of a solid: the inside of its contours is filled, and contours that do not close are left out.
     Solid,
     /// A wall: one bead is laid along it.
     Wall,
 }
 
-/// How layers fit the height of a part.
+/// How layers are fitted to the height of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum LayerFit {
-    /// Layers of the given thickness, in the number that comes nearest to the height.
+    /// Layers of the given thickness; their number comes nearest to the height.
     #[default]
     Fixed,
-    /// Layers of the given thickness, with one more where the part would end above the last.
+    /// Layers of the given thickness, plus one if the part would end above the last.
     Last,
-    /// The same number of equal layers that end with the part.
+    /// The same number of layers, made equal so that they end with the part.
     Even,
 }
 
@@ -167,10 +168,10 @@ pub fn fitted_slabs(mesh: &Mesh, height: f64, fit: LayerFit) -> Vec<Slab> {
     }
 }
 
-/// Equal layers are at most this many times as thick as they should be.
+/// Most by which equal layers may exceed the given thickness, as a factor.
 const THICKEST: f64 = 1.25;
 
-/// A last layer thinner than this fraction of a layer is rounding.
+/// A last layer thinner than this fraction of a layer is a rounding error.
 pub(crate) const ROUNDING: f64 = 1e-3;
 
 /// Layers of one height (mm) for a mesh that stands on z = 0. A last layer that would be less than half full is left
@@ -197,9 +198,9 @@ pub fn even_slabs(mesh: &Mesh, height: f64) -> Vec<Slab> {
 /// ```
 pub struct Slicer<'a> {
     mesh: &'a Mesh,
-    /// The chart in whose coordinates the mesh is, where its layers are not planes.
+    /// The chart in whose coordinates the mesh is given, if its layers are not planes.
     chart: Option<&'a Chart>,
-    /// Where the next layer has the same underside, only what of it is thicker than this is kept, mm.
+    /// If the next layer has the same underside, only the area where that layer is thicker than this is kept, mm.
     thickest: f64,
     options: SliceOptions,
     slabs: Vec<Slab>,
@@ -217,21 +218,22 @@ impl<'a> Slicer<'a> {
     /// Sorts the triangles of a mesh that stands on z = 0 into batches of layers.
     ///
     /// # Errors
-    /// [`Cancelled`] when the task was.
+    /// [`Cancelled`] if the task was cancelled.
     pub fn new(mesh: &'a Mesh, options: SliceOptions, task: &Task) -> Result<Self, Cancelled> {
         let slabs = even_slabs(mesh, options.layer_height);
         Self::of_slabs(mesh, slabs, options, task)
     }
 
-    /// Sorts the triangles into layers of any thickness, the lowest first; `options.layer_height` is the usual one.
+    /// Sorts the triangles into layers of any thickness, the lowest first; `options.layer_height` is the usual
+    /// thickness.
     ///
     /// # Errors
-    /// [`Cancelled`] when the task was.
+    /// [`Cancelled`] if the task was cancelled.
     pub fn of_slabs(mesh: &'a Mesh, slabs: Vec<Slab>, options: SliceOptions, task: &Task) -> Result<Self, Cancelled> {
         task.step(Stage::Slice, 0.0)?;
         let (h, count) = (options.layer_height, slabs.len());
         let top = mesh.bounds().1.z;
-        // A layer whose middle lies above the part is cut in the middle of what it holds of the part.
+        // A layer whose middle lies above the part is cut at mid-height of the piece of the part in it.
         let plane = |k: usize| {
             let Slab { z, height } = slabs[k];
             let (low, middle) = (z - height, middle(z, height, half(&slabs, k)));
@@ -273,12 +275,13 @@ impl<'a> Slicer<'a> {
         })
     }
 
-    /// The same for a mesh in the coordinates of a chart ([`crate::chart::warp`]): islands are put together across the seam.
+    /// For a mesh in the coordinates of a chart ([`crate::chart::warp`]): islands are joined across the seam.
     pub fn on(self, chart: &'a Chart) -> Self {
         Self { chart: (!chart.is_level()).then_some(chart), ..self }
     }
 
-    /// Layers are no thicker than this (mm): of two with the same underside, the lower lies only where the upper would be thicker.
+    /// Limits the thickness of layers (mm): of two with the same underside, the lower covers only where the upper would
+    /// be thicker.
     pub fn no_thicker_than(self, thickest: f64) -> Self {
         Self { thickest, ..self }
     }
@@ -296,7 +299,7 @@ impl<'a> Slicer<'a> {
     /// The lines in which one batch of layers cuts an open surface.
     ///
     /// # Errors
-    /// [`Cancelled`] when the task was.
+    /// [`Cancelled`] if the task was cancelled.
     pub fn lines(&self, batch: usize, task: &Task) -> Result<Vec<Lines>, Cancelled> {
         self.each(batch, task, |index, triangles| {
             let (Trace { rings, open }, warnings) = self.traced(index, triangles);
@@ -312,12 +315,12 @@ impl<'a> Slicer<'a> {
     /// Cuts one batch of layers in parallel.
     ///
     /// # Errors
-    /// [`Cancelled`] when the task was.
+    /// [`Cancelled`] if the task was cancelled.
     pub fn batch(&self, batch: usize, task: &Task) -> Result<Vec<Slice>, Cancelled> {
         self.each(batch, task, |index, triangles| self.cut(index, triangles))
     }
 
-    /// A result for each layer of a batch, in parallel.
+    /// One result per layer of a batch, in parallel.
     fn each<T: Send>(
         &self,
         batch: usize,
@@ -336,10 +339,10 @@ impl<'a> Slicer<'a> {
             .collect()
     }
 
-    /// Cuts all layers. Long parts are better cut [batch](Self::batch) by batch.
+    /// Cuts all layers. For tall parts, cut [batch](Self::batch) by batch.
     ///
     /// # Errors
-    /// [`Cancelled`] when the task was.
+    /// [`Cancelled`] if the task was cancelled.
     pub fn all(&self, task: &Task) -> Result<Vec<Slice>, Cancelled> {
         let mut layers = Vec::with_capacity(self.layer_count());
         for batch in 0..self.batch_count() {
@@ -360,7 +363,7 @@ impl<'a> Slicer<'a> {
         by_layer
     }
 
-    /// The contours of a layer, those that do not close separately, and warnings of gaps.
+    /// The contours of a layer, open ones separately, and warnings of gaps.
     fn traced(&self, index: usize, triangles: &[u32]) -> (Trace, Vec<Warning>) {
         let scratch = self.scratch.lock().ok().and_then(|mut pool| pool.pop());
         let mut scratch = scratch.unwrap_or_else(|| Scratch::new(self.mesh.triangles.len()));
@@ -401,7 +404,7 @@ impl<'a> Slicer<'a> {
         layer
     }
 
-    /// What a layer covers of its slice: the lower of two only where the upper one is too thick.
+    /// The area of its slice that a layer covers: for the lower of two, only where the upper one is too thick.
     fn halved(&self, region: Region, index: usize, chart: &Chart) -> Region {
         let upper = self.slabs.get(index + 1).filter(|_| half(&self.slabs, index) == Some(Half::Lower));
         let (Some(upper), Some(bounds)) = (upper, region.bounds()) else { return region };
@@ -412,7 +415,7 @@ impl<'a> Slicer<'a> {
     }
 }
 
-/// Which of two layers with the same underside one is.
+/// Whether a layer shares its underside with a neighbour, and which of the two it is.
 fn half(slabs: &[Slab], index: usize) -> Option<Half> {
     let underside = |slab: &Slab| slab.z - slab.height;
     let own = underside(&slabs[index]);
@@ -423,10 +426,10 @@ fn half(slabs: &[Slab], index: usize) -> Option<Half> {
     is_same(index.checked_sub(1).and_then(|below| slabs.get(below))).then_some(Half::Upper)
 }
 
-/// Undersides this close together are the same, mm.
+/// Undersides closer than this are the same, mm.
 const SAME_MM: f64 = 1e-6;
 
-/// Slivers shorter than this are rounding.
+/// Slivers shorter than this are rounding errors and are not reported.
 const WORTH_TELLING_MM: f64 = 1.0;
 
 /// Leaves out holes and islands that are too thin to matter, with a warning.
@@ -447,7 +450,7 @@ fn drop_slivers(layer: &mut Slice) {
     });
 }
 
-/// How many planes lie at height `z` or below.
+/// Number of planes at or below height `z`.
 fn level(planes: &[f64], spacing: f64, z: f64) -> u32 {
     // Right for equal layers except for rounding; the planes themselves decide.
     let guess = ((z / spacing + 0.5) as usize).min(planes.len());

@@ -12,7 +12,7 @@ use planar::Ring;
 #[derive(Default)]
 pub(super) struct Trace {
     pub(super) rings: Vec<Ring>,
-    /// Contours that end at a hole of the surface.
+    /// Contours that end at a hole in the surface.
     pub(super) open: Vec<Vec<DVec2>>,
 }
 
@@ -41,15 +41,15 @@ impl Scratch {
     }
 }
 
-/// The edges by which a contour enters and leaves a triangle.
+/// The edges through which a contour enters and leaves a triangle.
 #[derive(Clone, Copy)]
 struct Crossed {
     falling: usize,
     rising: usize,
 }
 
-/// Indexed by the set of corners that lie above the plane, corner k being bit k. A table instead of branches, because
-/// the set is practically random and the processor would mispredict it at every step.
+/// Indexed by the set of corners above the plane, corner k being bit k. A table instead of branches, because the set is
+/// practically random and the processor would mispredict branches at every step.
 const CROSSED: [Option<Crossed>; 8] = {
     const fn edges(falling: usize, rising: usize) -> Option<Crossed> {
         Some(Crossed { falling, rising })
@@ -60,7 +60,7 @@ const CROSSED: [Option<Crossed>; 8] = {
 /// One plane through a mesh.
 pub(super) struct Cut<'a> {
     pub(super) mesh: &'a Mesh,
-    /// For each vertex, how many planes are not above it.
+    /// For each vertex, the number of planes at or below it.
     pub(super) levels: &'a [u32],
     /// Index of the plane.
     pub(super) layer: u32,
@@ -73,7 +73,7 @@ impl Cut<'_> {
     pub(super) fn trace(&self, triangles: &[u32], scratch: &mut Scratch) -> Trace {
         scratch.next_layer();
         let mut result = Trace::default();
-        // Open contours first, from where they begin; what is left after them is loops.
+        // Open contours first, from where they begin; only loops remain after that.
         for &triangle in triangles {
             let Some(Crossed { falling, .. }) = self.crossed(triangle) else { continue };
             if self.mesh.neighbours[triangle as usize][falling] == NO_NEIGHBOUR && scratch.visit(triangle) {
@@ -123,7 +123,7 @@ impl Cut<'_> {
         [corners[edge], corners[(edge + 1) % 3]].map(|v| self.mesh.vertices[v as usize])
     }
 
-    /// Where an edge meets the plane; computed from the lower end up, so that both triangles get the same point.
+    /// Where an edge meets the plane; computed from the lower end, so that both triangles get the same point.
     fn point(&self, lower: DVec3, upper: DVec3) -> DVec2 {
         let t = (self.plane - lower.z) / (upper.z - lower.z);
         lower.truncate().lerp(upper.truncate(), t)

@@ -1,4 +1,4 @@
-//! Text files as people have them: with a byte order mark, in UTF-16, with the line ends of any system.
+//! Text files as they occur in practice: with a byte order mark, in UTF-16, with the line ends of any system.
 
 pub mod toml;
 
@@ -13,8 +13,8 @@ pub enum TextError {
     Encoding(&'static str),
 }
 
-/// The text of a file, without byte order mark and with `\n` at the end of each line. UTF-16 is understood if it begins
-/// with its mark; bytes that are not text become `\u{fffd}`.
+/// The text of a file, without byte order mark and with `\n` at the end of each line. UTF-16 is recognised by its
+/// byte order mark; bytes that are not text become `\u{fffd}`.
 ///
 /// ```
 /// use bead_part::text;
@@ -25,7 +25,7 @@ pub enum TextError {
 /// ```
 ///
 /// # Errors
-/// [`TextError`] for UTF-32, and for UTF-16 without a mark.
+/// [`TextError`] for UTF-32, and for UTF-16 without a byte order mark.
 pub fn of(bytes: &[u8]) -> Result<String, TextError> {
     let text = match bytes {
         [0xff, 0xfe, 0, 0, ..] | [0, 0, 0xfe, 0xff, ..] => return Err(TextError::Encoding("UTF-32")),
@@ -35,7 +35,7 @@ pub fn of(bytes: &[u8]) -> Result<String, TextError> {
         _ if is_wide(bytes) => return Err(TextError::Encoding("UTF-16 without a byte order mark")),
         _ => String::from_utf8_lossy(bytes),
     };
-    // Old Macs end lines with \r alone; between \r and \n no line is counted.
+    // Old Macs end lines with \r alone; \r\n counts as one line end.
     if text.contains('\r') { Ok(text.replace("\r\n", "\n").replace('\r', "\n")) } else { Ok(text.into_owned()) }
 }
 

@@ -1,11 +1,11 @@
 //! TOML as people write it: the line of a key, and what a parser's message means.
 
-/// The line, counted from 1, that contains a byte of a text.
+/// The number, from 1, of the line that contains a byte of a text.
 pub fn line_of(text: &str, byte: usize) -> usize {
     text.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count() + 1
 }
 
-/// The line that contains a key such as `bead.width`.
+/// The number of the line with a key such as `bead.width`.
 ///
 /// ```
 /// use bead_part::text::toml::line_of_key;
@@ -24,7 +24,7 @@ pub fn line_of_key(text: &str, key: &str) -> usize {
     line_of(text, at)
 }
 
-/// Turns the parser's message into a sentence and finds the nearest of the words it expected.
+/// Turns the parser's message into a sentence and suggests the nearest of the words it expected.
 ///
 /// ```
 /// use bead_part::text::toml::explain;

@@ -1,4 +1,4 @@
-//! Where warnings come from and what helps, for the page of all warnings (`docs/book/checks.md`).
+//! The causes and remedies of warnings, for the page of all warnings (`docs/book/checks.md`).
 
 use super::WarningKind;
 
@@ -7,7 +7,7 @@ use super::WarningKind;
 pub struct About {
     /// The word in `metrics.json`.
     pub name: &'static str,
-    /// What it comes from, as part of a sentence.
+    /// The cause, as part of a sentence.
     pub cause: &'static str,
     /// What to do, as part of a sentence.
     pub remedy: &'static str,

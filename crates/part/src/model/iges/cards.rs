@@ -17,13 +17,13 @@ pub(super) struct Card<'a> {
     pub(super) text: &'a [u8],
 }
 
-/// The sections; the start section, a text for people, is passed over.
+/// The sections; the start section, a text for people, is skipped.
 #[derive(Debug, Default)]
 pub(super) struct Cards<'a> {
     pub(super) global: Vec<Card<'a>>,
     pub(super) directory: Vec<Card<'a>>,
     pub(super) parameters: Vec<Card<'a>>,
-    /// Numbers of G, D and P cards that the last card announces, where it does.
+    /// Numbers of G, D and P cards that the last card announces, if it does.
     pub(super) announced: Vec<(char, usize)>,
 }
 

@@ -6,13 +6,13 @@ use crate::curve::Nurbs;
 use glam::DVec3;
 use std::collections::VecDeque;
 
-/// How the parts of a composite were found.
+/// The parts of a composite, and how they were listed.
 pub(super) enum Chain {
     /// As the standard requires.
     InOrder(Vec<Nurbs>),
     /// They meet, but in another order or direction; here they are in the order in which they meet.
     Reordered(Vec<Nurbs>),
-    /// They do not meet; with the widest gap between the parts as listed, in units of the file.
+    /// They do not meet; the widest gap between the parts as listed, in units of the file.
     Gap(Vec<Nurbs>, f64),
 }
 

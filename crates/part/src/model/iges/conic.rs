@@ -6,13 +6,13 @@ use crate::curve::Nurbs;
 use glam::{DMat3, DVec2, DVec3, dvec2, dvec3};
 use std::f64::consts::TAU;
 
-/// Ends of an ellipse closer than this share of its size coincide: the ellipse is complete.
+/// Ends of an ellipse closer than this fraction of its size coincide: the ellipse is complete.
 const SAME: f64 = 1e-9;
 
 /// Reads a conic arc: six coefficients, z, start and end. An ellipse runs counter-clockwise.
 ///
 /// # Errors
-/// What is wrong, as the rest of a sentence.
+/// A description of the fault, as the rest of a sentence.
 pub(super) fn curve(p: &Parameters) -> Read {
     let [a, b, c, d, e, f] = [1, 2, 3, 4, 5, 6].map(|i| p.real(i));
     let (a, b, c, d, e, f) = (a?, b?, c?, d?, e?, f?);

@@ -1,4 +1,5 @@
-//! A drawing built from its sections: every entity in place, composites from their members, and what was not read.
+//! Assembles a drawing from its sections: every entity in place, composites from their members, and a list of what was
+//! not read.
 
 use super::cards::{self, Card};
 use super::chain::{self, Chain};
@@ -13,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Columns of a parameter card that hold data.
 const WIDTH: usize = 64;
 
-/// Maximum number of matrices in a chain, each placed by the next.
+/// Most matrices in a chain, each placed by the next.
 const MAX_CHAIN: usize = 32;
 
 /// Parts of a composite meet when their gap is no wider than this, mm (or ten times the file's own resolution).
@@ -26,7 +27,7 @@ const NAME_FORM: i32 = 15;
 
 /// Reads the curves of an IGES file of fixed format and lists everything else.
 ///
-/// A broken entity is passed over with a warning; a broken file is refused.
+/// A broken entity is skipped with a warning; a broken file is refused.
 ///
 /// # Errors
 /// [`IgesError`] with the line and the reason.
@@ -67,7 +68,7 @@ struct Drawing<'a> {
     read: Vec<bool>,
 }
 
-/// A curve before it is put into the file: its parts in file units, and its name property.
+/// A curve before it is added to the file: its parts in file units, and its name property.
 type Placed = (Vec<Nurbs>, Option<String>);
 
 impl Drawing<'_> {
@@ -112,7 +113,7 @@ impl Drawing<'_> {
         self.warnings.push(format!("The {place} was not read: {reason}. Export it again, or redraw it."));
     }
 
-    /// `circular arc at directory entry D19`.
+    /// Its location in words: `circular arc at directory entry D19`.
     fn place(&self, i: usize) -> String {
         format!("{} at directory entry D{}", names::name(self.entries[i].entity), self.entries[i].number)
     }
@@ -172,7 +173,7 @@ impl Drawing<'_> {
         Err("its matrices point to each other in a loop".to_owned())
     }
 
-    /// A curve that is not a composite, in place.
+    /// A curve other than a composite, in place.
     fn single(&mut self, i: usize) -> Result<Placed, String> {
         let parameters = self.parameters(i)?;
         let (curve, last) = entities::curve(self.entries[i].entity, self.entries[i].form, &parameters)?;
@@ -249,7 +250,7 @@ impl Drawing<'_> {
         flagged.chain(pointed).collect()
     }
 
-    /// The name that a property gives. After an entity's own parameters come the number of associativities and pointers
+    /// The name given by a property. After an entity's own parameters come the number of associativities and pointers
     /// to them, then the same for properties.
     fn name_property(&mut self, parameters: &Parameters, last: usize) -> Option<String> {
         let associativities = parameters.count(last + 1, 1).ok()?;

@@ -7,16 +7,16 @@ use crate::curve::Nurbs;
 use glam::{DAffine3, DMat3, DVec3, dvec3};
 use std::f64::consts::TAU;
 
-/// Ends of an arc closer than this share of its radius coincide: the arc is a circle.
+/// Ends of an arc closer than this fraction of its radius coincide: the arc is a circle.
 const SAME: f64 = 1e-9;
 
-/// Radii of the ends of an arc may differ by this share.
+/// The radii of an arc's ends may differ by this fraction.
 const ROUND: f64 = 1e-3;
 
-/// Gaps between the pieces of a parametric spline may be as wide as this share of its extent.
+/// Gaps between the pieces of a parametric spline may be as wide as this fraction of its extent.
 const GAP: f64 = 1e-4;
 
-/// A curve, and the number of its last own parameter, after which pointers to properties follow.
+/// A curve, and the index of its last own parameter; pointers to properties follow.
 pub(super) type Read = Result<(Nurbs, usize), String>;
 
 /// Whether entities of this type are curves that [`curve`] reads.
@@ -27,7 +27,7 @@ pub(super) fn is_curve(entity: u32) -> bool {
 /// Reads a curve.
 ///
 /// # Errors
-/// What is wrong, with parameter and line, as the rest of a sentence.
+/// A description of the fault with parameter and line, as the rest of a sentence.
 pub(super) fn curve(entity: u32, form: i32, p: &Parameters) -> Read {
     match entity {
         100 => arc(p),
@@ -40,7 +40,7 @@ pub(super) fn curve(entity: u32, form: i32, p: &Parameters) -> Read {
     }
 }
 
-/// An error as words.
+/// An error as text.
 pub(super) fn text(error: impl std::fmt::Display) -> String {
     error.to_string()
 }
@@ -100,7 +100,7 @@ fn copious(form: i32, p: &Parameters) -> Read {
 
 /// 112: cubic polynomials `a + b s + c s² + d s³` over each piece, s = u − break.
 fn parametric_spline(p: &Parameters) -> Read {
-    // A piece takes a break and twelve coefficients.
+    // A piece takes one break and twelve coefficients.
     let pieces = p.count(4, 13)?;
     let breaks = reals(p, 5, pieces + 1)?;
     let mut points: Vec<DVec3> = Vec::with_capacity(3 * pieces + 1);
@@ -131,7 +131,7 @@ fn parametric_spline(p: &Parameters) -> Read {
 fn spline(p: &Parameters) -> Read {
     let upper = p.count(1, 5)?;
     let degree = usize::try_from(p.integer(2)?).map_err(|_| "its degree is negative".to_owned())?;
-    // Checked here, because a huge degree would ask for as many knots.
+    // Checked here, because a huge degree would require as many knots.
     if degree > upper {
         return Err(format!("it has {} control points, too few for its degree {degree}", upper + 1));
     }
@@ -143,7 +143,7 @@ fn spline(p: &Parameters) -> Read {
     Ok((in_range(curve, p, range_at)?, range_at + 4))
 }
 
-/// The piece between the given start and end parameters; the whole curve where they are left out.
+/// The piece between the given start and end parameters; the whole curve if they are omitted.
 fn in_range(curve: Nurbs, p: &Parameters, i: usize) -> Result<Nurbs, String> {
     if !(p.has(i) || p.has(i + 1)) {
         return Ok(curve);

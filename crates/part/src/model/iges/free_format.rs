@@ -14,7 +14,7 @@ pub(super) struct Delimiters {
 /// One parameter.
 #[derive(Debug, Clone, PartialEq)]
 enum Field {
-    /// Left out: the default applies.
+    /// Omitted: the default applies.
     Empty,
     /// A Hollerith string, `5Hwords`.
     Text(String),
@@ -28,7 +28,7 @@ pub(super) struct Parameters {
     fields: Vec<(Field, usize)>,
 }
 
-/// The columns of many cards as one text; cards shorter than `width` are padded with blanks.
+/// Columns of many cards as one text; cards shorter than `width` are padded with blanks.
 pub(super) struct Text {
     bytes: Vec<u8>,
     /// Line of the first card and how many columns each has: card k is on the k-th of the given lines.
@@ -108,12 +108,12 @@ fn ascii(bytes: &[u8]) -> String {
 }
 
 impl Parameters {
-    /// Number of parameters, the first being 0 here and elsewhere.
+    /// Number of parameters; they are counted from 0 throughout.
     pub(super) fn len(&self) -> usize {
         self.fields.len()
     }
 
-    /// Parameter `i` as a number; one left out is 0.
+    /// Parameter `i` as a number; 0 if omitted.
     ///
     /// # Errors
     /// The reason, with number and line, when it is missing or not a finite number.
@@ -125,23 +125,23 @@ impl Parameters {
         }
     }
 
-    /// Parameter `i` as a whole number; one left out is 0.
+    /// Parameter `i` as a whole number; 0 if omitted.
     ///
     /// # Errors
     /// As [`Parameters::real`].
     pub(super) fn integer(&self, i: usize) -> Result<i64, String> {
         let value = self.real(i)?;
-        // Some programs write whole numbers with a point.
+        // Some programs write whole numbers with a decimal point.
         if value.fract() == 0.0 && value.abs() < 1e15 {
             return Ok(value as i64);
         }
         Err(format!("parameter {i} is {value}, not a whole number"))
     }
 
-    /// Parameter `i` as the number of things that follow, of which each takes `size` parameters.
+    /// Parameter `i` as the number of items that follow, each of `size` parameters.
     ///
     /// # Errors
-    /// As [`Parameters::real`], and when the record is too short for that many.
+    /// As [`Parameters::real`], and when the record is too short for so many items.
     pub(super) fn count(&self, i: usize, size: usize) -> Result<usize, String> {
         let value = self.integer(i)?;
         let room = self.len().saturating_sub(i + 1) / size.max(1);
@@ -151,7 +151,7 @@ impl Parameters {
         }
     }
 
-    /// Parameter `i` as a string; one left out is empty.
+    /// Parameter `i` as a string; empty if omitted.
     pub(super) fn text(&self, i: usize) -> &str {
         match self.fields.get(i) {
             Some((Field::Text(text) | Field::Word(text), _)) => text.trim(),

@@ -7,19 +7,19 @@ use super::free_format::{Delimiters, Parameters, Text};
 /// Columns of a global card that hold data.
 const WIDTH: usize = 72;
 
-/// What is needed to read the rest of the file.
+/// The data needed to read the rest of the file.
 #[derive(Debug)]
 pub(super) struct Global {
     pub(super) delimiters: Delimiters,
-    /// Millimetres in one unit of the coordinates, the scale of the drawing removed.
+    /// Millimetres per unit of the coordinates, with the drawing scale removed.
     pub(super) unit_mm: f64,
     /// Points closer than this coincide, mm.
     pub(super) resolution_mm: f64,
-    /// Writing program.
+    /// The program that wrote the file.
     pub(super) system: String,
 }
 
-/// Reads the global section; `warnings` receives the faults that can be tolerated.
+/// Reads the global section; tolerable faults are added to `warnings`.
 ///
 /// # Errors
 /// [`IgesError::Global`] and [`IgesError::Unit`].
@@ -31,7 +31,7 @@ pub(super) fn read(cards: &[Card], warnings: &mut Vec<String>) -> Result<Global,
     let Some(at) = at else {
         return Err(error("it ends after the delimiters".to_owned()));
     };
-    // The first field that is split here is global parameter 3.
+    // The first field split here is global parameter 3.
     let global = text.split(at, delimiters).map_err(error)?;
     let parameter = |number: usize| number - 3;
     let scale = scale(&global, parameter(13), warnings).map_err(error)?;
@@ -41,7 +41,7 @@ pub(super) fn read(cards: &[Card], warnings: &mut Vec<String>) -> Result<Global,
     Ok(Global { delimiters, unit_mm, resolution_mm: resolution * unit_mm, system })
 }
 
-/// The two delimiters, and where the third parameter begins (none when the section ends before).
+/// The two delimiters, and where the third parameter begins (`None` if the section ends before it).
 fn delimiters(text: &[u8]) -> Result<(Delimiters, Option<usize>), String> {
     let mut at = 0;
     let mut next = |default: u8, known: Option<u8>| -> Result<(u8, u8), String> {
@@ -69,7 +69,7 @@ fn delimiters(text: &[u8]) -> Result<(Delimiters, Option<usize>), String> {
     Ok((Delimiters { parameter, record }, (end == parameter).then_some(at)))
 }
 
-/// Lengths of the drawing over those of the part; 1 where none is given.
+/// Scale of the drawing: its lengths over those of the part; 1 if not given.
 fn scale(global: &Parameters, i: usize, warnings: &mut Vec<String>) -> Result<f64, String> {
     if !global.has(i) {
         return Ok(1.0);
@@ -101,10 +101,10 @@ const UNITS: [(i64, &[&str], f64); 10] = [
     (11, &["UIN"], 2.54e-5),
 ];
 
-/// Millimetres in one unit.
+/// Millimetres per unit.
 fn unit(global: &Parameters, flag: usize, name: usize, warnings: &mut Vec<String>) -> Result<f64, IgesError> {
     let name = global.text(name).to_uppercase();
-    // Left out, the flag means inches.
+    // An omitted flag means inches.
     let flag = if global.has(flag) { global.integer(flag).unwrap_or(0) } else { 1 };
     let by_flag = UNITS.iter().find(|(f, ..)| *f == flag);
     let by_name = UNITS.iter().find(|(_, names, _)| names.contains(&name.as_str()));

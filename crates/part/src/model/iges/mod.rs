@@ -9,7 +9,7 @@
 //! | `entities` | curves from their parameters (100, 106, 110, 112, 126) and matrices (124) |
 //! | `conic` | conic arcs (104) |
 //! | `chain` | parts of a composite in the order in which they meet |
-//! | `drawing` | puts it together: places, composites (102), names, what was not read |
+//! | `drawing` | assembles the drawing: placement, composites (102), names, what was not read |
 //! | `names` | what the entity numbers mean |
 //! | `write` | writes curves as entity 126 |
 //!
@@ -35,14 +35,14 @@ use crate::curve::Nurbs;
 /// What was read from an IGES file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct IgesFile {
-    /// All curves in the order of the directory, members of composites among them (they are also in the parts of
-    /// their composite).
+    /// All curves in the order of the directory, including members of composites (which are also in the parts of their
+    /// composite).
     pub curves: Vec<IgesCurve>,
     /// Every kind of entity in the file, by its number.
     pub entities: Vec<EntityCount>,
-    /// What was wrong and what that led to, in sentences.
+    /// What was wrong and how it was handled, in sentences.
     pub warnings: Vec<String>,
-    /// Millimetres in one unit of the file, its scale included; the curves are in mm already.
+    /// Millimetres per unit of the file, scale included; the curves are already in mm.
     pub unit_mm: f64,
     /// The program that wrote the file, as it calls itself.
     pub system: String,
@@ -95,7 +95,7 @@ pub struct EntityCount {
     pub name: &'static str,
     /// Those that were read and used.
     pub read: usize,
-    /// Those that were passed over.
+    /// Those that were skipped.
     pub unread: usize,
 }
 
@@ -120,7 +120,7 @@ pub enum IgesError {
         /// The reason, with the line.
         reason: String,
     },
-    /// IGES, but not of 80-column cards.
+    /// IGES, but not in 80-column cards.
     #[error("this is an IGES file in {form} form, which is not read. Save it as IGES in fixed (ASCII) format.")]
     OtherForm {
         /// `binary` or `compressed`.
@@ -129,7 +129,7 @@ pub enum IgesError {
     /// The file ends too early.
     #[error("the IGES file is cut short: {reason}. Copy or export it again.")]
     Truncated {
-        /// Where it ends.
+        /// Where it ends, in words.
         reason: String,
     },
     /// A card that cannot be read.
@@ -148,7 +148,7 @@ pub enum IgesError {
         /// What was expected and what was found.
         reason: String,
     },
-    /// The unit is not known.
+    /// An unknown unit.
     #[error(
         "the IGES file has the unit flag {flag} and the unit name \"{name}\", which is not a known unit. Export it in mm."
     )]

@@ -88,7 +88,7 @@ const NAMES: [(u32, &str); 85] = [
     (514, "shell"),
 ];
 
-/// The entity in words.
+/// The entity type in words.
 pub(super) fn name(entity: u32) -> &'static str {
     let found = NAMES.binary_search_by_key(&entity, |(number, _)| *number);
     found.map_or("unknown entity", |i| NAMES[i].1)

@@ -1,10 +1,10 @@
-//! Writes curves as rational B-spline curves (126), readable again to the last digit.
+//! Writes curves as rational B-spline curves (126) that read back exactly.
 
 use crate::curve::Nurbs;
 use glam::DVec3;
 use std::fmt::Write;
 
-/// What a written file says in its head.
+/// The header data of a written file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WriteOptions {
     /// Name of the file, as the file itself states it. Default: `curves.igs`.
@@ -22,7 +22,7 @@ impl Default for WriteOptions {
 /// Longest label in a directory entry; longer names are cut.
 const LABEL: usize = 8;
 
-/// A curve is planar when its control points leave the plane by less than this share of its extent.
+/// A curve is planar when its control points are off the plane by less than this fraction of its extent.
 const FLAT: f64 = 1e-9;
 
 /// Columns for data on global and on parameter cards.
@@ -32,7 +32,7 @@ const PARAMETER_WIDTH: usize = 64;
 /// Columns for the length of a string, which is never split.
 const COUNT: usize = 8;
 
-/// An IGES file of named curves, mm. Characters beyond ASCII become question marks.
+/// An IGES file of named curves, mm. Non-ASCII characters become question marks.
 ///
 /// ```
 /// use bead_part::curve::Nurbs;
@@ -150,7 +150,7 @@ fn hollerith(text: &str) -> String {
     if text.is_empty() { text } else { format!("{}H{text}", text.len()) }
 }
 
-/// The fewest digits that give the same number again, with a point and a D before the exponent.
+/// The shortest number that reads back the same, with a point and a D before the exponent.
 fn real(value: f64) -> String {
     let text = format!("{value:?}");
     match text.split_once('e') {

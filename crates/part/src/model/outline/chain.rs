@@ -1,4 +1,4 @@
-//! Loose pieces of outlines are joined where their ends meet.
+//! Joins loose pieces of outlines where their ends meet.
 
 use glam::DVec2;
 use planar::{Bounds, Ring};
@@ -10,7 +10,7 @@ const JOIN: f64 = 1e-5;
 /// A chain that does not close: its ends, in the units of the file.
 pub(super) struct Gap(pub(super) DVec2, pub(super) DVec2);
 
-/// The rings that pieces form, each of which has two points or more; each piece is used once.
+/// The rings formed by pieces of at least two points; each piece is used once.
 pub(super) fn rings(pieces: Vec<Vec<DVec2>>) -> Result<Vec<Ring>, Gap> {
     let extent = Bounds::of(pieces.iter().flatten().copied()).map_or(0.0, |bounds| bounds.size().max_element());
     let mut ends = Ends { cells: HashMap::new(), step: (JOIN * extent).max(f64::MIN_POSITIVE), pieces };
@@ -44,7 +44,7 @@ pub(super) fn rings(pieces: Vec<Vec<DVec2>>) -> Result<Vec<Ring>, Gap> {
     Ok(rings)
 }
 
-/// The ends of all pieces, by where they lie.
+/// The ends of all pieces, by position.
 struct Ends {
     pieces: Vec<Vec<DVec2>>,
     cells: HashMap<[i64; 2], Vec<(usize, bool)>>,
@@ -63,7 +63,7 @@ impl Ends {
         end.copied().unwrap_or_default()
     }
 
-    /// The nearest unused piece that begins or ends at a place, and whether it ends there.
+    /// The nearest unused piece that begins or ends at a position, and whether that is its end.
     fn at(&self, place: DVec2, used: &[bool]) -> Option<(usize, bool)> {
         let [x, y] = self.cell(place);
         let near = (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| [x + dx, y + dy]));

@@ -1,5 +1,5 @@
-//! DXF drawings: LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE, with bulges. Curves that cannot be followed exactly are refused
-//! by name; texts, dimensions and similar entities are reported and passed over.
+//! DXF drawings: LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE, with bulges. Curves that cannot be followed exactly are
+//! refused by name; texts, dimensions and similar entities are skipped and reported.
 
 use super::super::{ImportError, Units};
 use super::entity::{self, Entity, broken};
@@ -9,7 +9,7 @@ use planar::Ring;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// Arcs become chords that turn by no more than this, °: off by 4e-5 of the radius.
+/// Arcs become chords that turn by at most this, °: off by 4e-5 of the radius.
 const CHORD_DEGREES: f64 = 1.0;
 
 /// Entities without an outline.
@@ -81,7 +81,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Outlines, ImportError> {
     Ok(Outlines { rings: found.rings, format: "DXF", units, notes })
 }
 
-/// What a drawing holds.
+/// The outlines found in a drawing.
 #[derive(Default)]
 struct Found {
     rings: Vec<Ring>,
@@ -93,7 +93,7 @@ struct Found {
 
 impl Found {
     fn add(&mut self, entity: &Entity<'_>, vertices: &[&Entity<'_>]) -> Result<(), ImportError> {
-        // On the paper, not in the model; or hidden.
+        // In paper space rather than model space, or hidden.
         if entity.number(67, 0.0)? != 0.0 || entity.number(60, 0.0)? != 0.0 {
             *self.passed_over.entry(format!("{} on paper or hidden", entity.name)).or_default() += 1;
             return Ok(());
@@ -147,7 +147,7 @@ impl Found {
 
     fn open(&mut self, points: Vec<DVec2>) {
         self.points += points.len();
-        // Lines without length join nothing.
+        // Zero-length lines join nothing.
         if points.first() != points.last() || points.len() > 2 {
             self.pieces.push(points);
         }
@@ -191,13 +191,14 @@ fn arc(centre: DVec2, radius: f64, from: f64, sweep: f64) -> Vec<DVec2> {
     (0..=count).map(at).collect()
 }
 
-/// Points from one vertex to the next: a straight piece, or an arc whose sweep has a quarter with the tangent `bulge`.
+/// Points from one vertex to the next: straight, or along an arc whose `bulge` is the tangent of a quarter of its
+/// sweep.
 fn bulged(from: DVec2, to: DVec2, bulge: f64) -> Vec<DVec2> {
     let chord = to - from;
     if bulge == 0.0 || chord == DVec2::ZERO {
         return vec![from, to];
     }
-    // The middle lies off the chord's: r cos(sweep / 2) = c / 2 · (1 - b²) / 2b.
+    // Distance of the centre from the chord: r cos(sweep / 2) = c / 2 · (1 - b²) / 2b.
     let centre = from + chord / 2.0 + chord.perp() * (1.0 - bulge * bulge) / (4.0 * bulge);
     let arm = from - centre;
     let mut points = arc(centre, arm.length(), arm.to_angle(), 4.0 * bulge.atan());

@@ -1,4 +1,4 @@
-//! A DXF drawing as it is in its text: pairs of lines, a code and a value, which form entities.
+//! A DXF drawing as text: pairs of lines, code and value, that form entities.
 
 use super::super::ImportError;
 use glam::DVec2;
@@ -55,13 +55,13 @@ pub(super) fn drawing(text: &str) -> Result<Drawing<'_>, ImportError> {
     Ok(drawing)
 }
 
-/// The beginning of a text that may be long.
+/// The beginning of a possibly long text.
 fn shown(text: &str) -> String {
     text.chars().take(20).collect()
 }
 
 impl Entity<'_> {
-    /// The number of a code; `missing` where it is not there.
+    /// The number with this code; `missing` if there is none.
     pub(super) fn number(&self, code: i32, missing: f64) -> Result<f64, ImportError> {
         let value = self.groups.iter().find(|(other, _)| *other == code).map(|(_, value)| *value);
         value.map_or(Ok(missing), |value| self.parsed(code, value))

@@ -7,7 +7,7 @@
 //! | `svg` | paths and shapes of SVG drawings, through `usvg` |
 //! | `chain` | loose pieces are joined end to end |
 //!
-//! Outlines within outlines are holes, outlines within those are solid again.
+//! An outline within an outline is a hole; one within a hole is solid again.
 
 mod chain;
 mod dxf;
@@ -32,7 +32,7 @@ pub struct Outlines {
     pub notes: Vec<String>,
 }
 
-/// What a drawing looks like, in words; `None` for anything else.
+/// What kind of drawing the bytes look like, in words; `None` for anything else.
 pub fn drawing(bytes: &[u8]) -> Option<&'static str> {
     [(dxf::is_dxf(bytes), "a DXF drawing"), (svg::is_svg(bytes), "an SVG drawing")]
         .into_iter()
@@ -45,7 +45,7 @@ pub fn drawing(bytes: &[u8]) -> Option<&'static str> {
 /// [`ImportError::Broken`] with the line or place, and what to draw instead; [`ImportError::TooFar`].
 pub fn read(bytes: &[u8]) -> Result<Outlines, ImportError> {
     let outlines = if dxf::is_dxf(bytes) { dxf::read(bytes)? } else { svg::read(bytes)? };
-    // As no unit is shorter than a millimetre, nothing farther out can be planned.
+    // No unit is shorter than a millimetre, so nothing farther out can be planned.
     let reach = outlines.reach();
     if reach.is_nan() || reach > MAX_REACH_MM {
         return Err(ImportError::TooFar { reach_m: reach / 1000.0 });
@@ -59,7 +59,7 @@ pub fn read(bytes: &[u8]) -> Result<Outlines, ImportError> {
     Ok(outlines)
 }
 
-/// No drawing has more points, once its curves are divided.
+/// Most points of a drawing, once its curves are divided.
 const MOST_POINTS: usize = 5_000_000;
 
 /// Refuses drawings with too many points.
@@ -84,16 +84,16 @@ impl Outlines {
         points.map(|p| p.abs().max_element()).fold(0.0, |a, b| if b <= a { a } else { b })
     }
 
-    /// What lies within the outlines and outside the holes, mm, where a unit of the file has `factor` mm.
+    /// The region within the outlines and outside the holes, mm; `factor` is mm per unit of the file.
     pub fn region(&self, factor: f64) -> Region {
         let scaled = |ring: &Ring| Ring::new(ring.points().iter().map(|p| *p * factor).collect());
         Region::from_rings(&self.rings.iter().map(scaled).collect::<Vec<_>>(), FillRule::EvenOdd)
     }
 
-    /// The solid over the outlines that is `height` (mm) high, where a unit of the file has `factor` mm.
+    /// The solid over the outlines, `height` (mm) high; `factor` is mm per unit of the file.
     ///
     /// # Errors
-    /// [`ImportError::Broken`] where nothing is left of the outlines at that size.
+    /// [`ImportError::Broken`] if nothing remains of the outlines at that size.
     pub fn extruded(&self, factor: f64, height: f64) -> Result<Import, ImportError> {
         let region = self.region(factor);
         let mut all = Solid::default();

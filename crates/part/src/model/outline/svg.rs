@@ -1,7 +1,7 @@
-//! SVG drawings: what is filled, and closed lines, as `usvg` resolves them (shapes, styles, transforms, units).
+//! SVG drawings: filled shapes and closed lines, as `usvg` resolves them (shapes, styles, transforms, units).
 //!
-//! y runs downwards in SVG and upwards in a part. Where the picture's width is given in mm, cm or inches, the coordinates
-//! are; otherwise one unit of the picture is one unit of the file, and the user says which.
+//! y runs downwards in SVG and upwards in a part. If the picture's width is given in mm, cm or inches, so are the
+//! coordinates; otherwise one unit of the picture is one unit of the file, and the user says which.
 
 use super::super::{ImportError, Units};
 use super::{Outlines, check_points};
@@ -16,7 +16,7 @@ const FLATNESS: f64 = 2e-5;
 /// Pixels in a millimetre, according to CSS.
 const PX_PER_MM: f64 = 96.0 / 25.4;
 
-/// A line ends where it began if it comes this near, as a fraction of the picture's extent.
+/// A line is closed if its ends are this near, as a fraction of the picture's extent.
 const CLOSED: f64 = 1e-5;
 
 fn broken(reason: impl Into<String>) -> ImportError {
@@ -40,14 +40,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Outlines, ImportError> {
     Ok(Outlines { rings: reader.rings.into_iter().map(scaled).collect(), format: "SVG", units, notes: notes(bytes) })
 }
 
-/// No picture within the drawing is read, least of all from disk.
+/// Embedded pictures are not read, least of all from disk.
 fn options() -> usvg::Options<'static> {
     let image_href_resolver =
         usvg::ImageHrefResolver { resolve_data: Box::new(|_, _, _| None), resolve_string: Box::new(|_, _| None) };
     usvg::Options { image_href_resolver, ..usvg::Options::default() }
 }
 
-/// What has no outline, as sentences.
+/// Elements without an outline, as sentences.
 fn notes(bytes: &[u8]) -> Vec<String> {
     let text = String::from_utf8_lossy(bytes);
     let count = |tag: &str| text.matches(tag).count();
@@ -55,7 +55,7 @@ fn notes(bytes: &[u8]) -> Vec<String> {
     counted.map(|(name, count)| format!("{count} × {name} in the drawing passed over.")).collect()
 }
 
-/// Whether the width of the picture is a length, not a number of pixels or a share of the window.
+/// Whether the width of the picture is a length, rather than pixels or a percentage.
 fn in_lengths(bytes: &[u8]) -> bool {
     let text = String::from_utf8_lossy(bytes);
     let tag = text.split("<svg").nth(1).and_then(|rest| rest.split('>').next()).unwrap_or_default();
@@ -65,12 +65,12 @@ fn in_lengths(bytes: &[u8]) -> bool {
 }
 
 struct Reader {
-    /// Of the picture, px.
+    /// Height of the picture, px.
     height: f64,
-    /// px
+    /// Greatest distance of a curve from its chords, px.
     flatness: f64,
     rings: Vec<Ring>,
-    /// Points so far.
+    /// Points found.
     points: usize,
 }
 
@@ -102,7 +102,7 @@ impl Reader {
         let mut rings = Vec::new();
         for (points, closed) in lines.done {
             let (Some(&first), Some(&last)) = (points.first(), points.last()) else { continue };
-            // What is filled is closed, drawn so or not.
+            // A filled shape is closed, whether drawn so or not.
             if !closed && rule.is_none() && first.distance(last) > near {
                 return Err(broken(format!(
                     "the line \"{}\" from ({:.2}, {:.2}) to ({:.2}, {:.2}) px is not closed: close it, fill it or delete it",
@@ -113,7 +113,7 @@ impl Reader {
                     self.height - last.y
                 )));
             }
-            // Beyond this, the grid of the plane ends.
+            // Beyond this lies the end of the 2-D grid.
             if points.iter().any(|p| p.abs().max_element() > MAX_COORDINATE_MM) {
                 return Err(broken(format!("the path \"{}\" lies out of bounds", path.id())));
             }
@@ -128,7 +128,7 @@ impl Reader {
     }
 }
 
-/// The lines of a path, curves divided; y upwards, px.
+/// The lines of a path with its curves divided; y upwards, px.
 struct Lines {
     height: f64,
     flatness: f64,
@@ -168,7 +168,7 @@ impl Lines {
         }
     }
 
-    /// Adds a curve as enough chords to lie within the flatness: by the second differences of its points.
+    /// Adds a curve as chords within the flatness, their number from the second differences of its points.
     fn cubic(&mut self, a: DVec2, b: DVec2, c: DVec2) {
         let from = self.open.last().copied().unwrap_or(a);
         let bend = (from - 2.0 * a + b).length().max((a - 2.0 * b + c).length());
@@ -183,7 +183,7 @@ impl Lines {
 
     fn end(&mut self, closed: bool) {
         let points = std::mem::take(&mut self.open);
-        // After a close command a path goes on from its beginning.
+        // After a close command, a path continues from its beginning.
         let first = points.first().copied().filter(|_| closed);
         if points.len() > 1 {
             self.done.push((points, closed));

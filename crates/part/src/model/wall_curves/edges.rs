@@ -1,7 +1,7 @@
-//! A wall between two edge curves that are not level: the surface of straight lines between corresponding points. Its level cuts
-//! are the centre-lines of layers, and where it leans, layers rise by h_n cos φ (Li et al., 1.2, eqs 5 to 8).
+//! A wall between two edge curves that are not level: the ruled surface between corresponding points. Its level cuts
+//! are the centre-lines of layers; where it leans, layers rise by h_n cos φ (Li et al., 1.2, eqs 5 to 8).
 //!
-//! The edges may be the lower and the upper one, or the two ends of a wall. Between them nothing is known, so the wall is
+//! The edges may be the bottom and the top, or the two ends of a wall. Nothing is known between them, so the wall is
 //! straight there.
 
 use super::{Curve, LEVEL_MM, level};
@@ -9,13 +9,13 @@ use crate::model::iges::IgesFile;
 use crate::model::{Mesh, RepairReport};
 use glam::{DAffine3, DVec3};
 
-/// Chords of the edges keep within this of the curves, mm.
+/// Greatest distance between the edge curves and their chords, mm.
 const CHORD_MM: f64 = 0.01;
 /// Least and greatest number of corresponding points.
 const POINTS: (usize, usize) = (128, 2048);
 
-/// The surface between the two visible, independent curves of a drawing, turned and scaled by `place`. `None` where there are more
-/// or fewer curves, where both are level, or where only one is closed.
+/// The surface between the two visible, independent curves of a drawing, turned and scaled by `place`. `None` if there
+/// are more or fewer than two curves, if both are level, or if only one is closed.
 pub(crate) fn ruled(file: &IgesFile, place: &DAffine3) -> Option<(Mesh, RepairReport)> {
     let curves: Vec<_> = file.independent_curves().collect();
     let [one, other] = curves[..] else { return None };
@@ -44,7 +44,8 @@ pub(crate) fn ruled(file: &IgesFile, place: &DAffine3) -> Option<(Mesh, RepairRe
     Some(Mesh::from_triangles(vertices, strip.collect()))
 }
 
-/// How far the diagonals of the strip lie off the surface, mm: a quarter of what corresponding steps differ by.
+/// Distance of the strip's diagonals from the ruled surface, mm: a quarter of the difference between corresponding
+/// steps.
 fn twist(below: &[DVec3], above: &[DVec3]) -> f64 {
     let steps = below.windows(2).zip(above.windows(2));
     steps.map(|(a, b)| ((a[1] - a[0]) - (b[1] - b[0])).length() / 4.0).fold(0.0, f64::max)
@@ -73,8 +74,8 @@ fn evenly(curve: &Curve, count: usize) -> Option<Vec<DVec3>> {
     Some((0..count).map(place).collect())
 }
 
-/// Points of the other edge, so that those which correspond lie near to each other: in the better of both directions, and a
-/// closed edge from where it fits best.
+/// The points of the other edge reordered so that corresponding points are near each other: in the better direction,
+/// and for a closed edge from the best start.
 fn matched(below: &[DVec3], above: Vec<DVec3>, closed: bool) -> Vec<DVec3> {
     let apart = |points: &[DVec3]| below.iter().zip(points).map(|(a, b)| a.distance_squared(*b)).sum::<f64>();
     let backwards: Vec<DVec3> = above.iter().rev().copied().collect();

@@ -1,5 +1,5 @@
-//! Walls given by curves instead of a solid: the centre-lines of one layer, or of several heights with the wall lofted
-//! between them.
+//! Walls given by curves instead of a solid: the centre-lines of one layer, or of several heights between which the
+//! wall is lofted.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -25,7 +25,7 @@ const LEVEL_MM: f64 = 0.05;
 /// Curves whose heights differ by no more than this belong to one height, mm.
 const SAME_HEIGHT_MM: f64 = 0.1;
 
-/// Number of points at which curves of neighbouring heights correspond, for leaning walls.
+/// Number of corresponding points on curves of neighbouring heights, for leaning walls.
 const PAIRS: usize = 64;
 
 /// The centre-lines of a wall.
@@ -35,7 +35,7 @@ pub struct WallCurves {
     levels: Vec<(f64, Vec<Curve>)>,
 }
 
-/// One centre-line: curves that follow each other.
+/// One centre-line: a sequence of curves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Curve {
     parts: Vec<Nurbs>,
@@ -112,7 +112,7 @@ impl WallCurves {
 
     /// Groups curves by height; `None` without any.
     fn new(mut curves: Vec<(f64, Curve)>) -> Option<Result<Self, WallCurvesError>> {
-        // The order within a height stays.
+        // The sort is stable: the order within a height is kept.
         curves.sort_by(|a, b| a.0.total_cmp(&b.0));
         let floor = curves.first()?.0;
         let mut levels: Vec<(f64, Vec<Curve>)> = Vec::new();
@@ -139,7 +139,7 @@ impl WallCurves {
         self.levels.first().map_or(0, |level| level.1.len())
     }
 
-    /// Their extent from the ground up to `height`, mm; `None` without curves.
+    /// Bounds of the curves from the ground up to `height`, mm; `None` without curves.
     pub fn bounds(&self, height: f64) -> Option<Bounds> {
         let sections = [0.0, height].into_iter().flat_map(|z| self.at(z, 1.0));
         Bounds::of(sections.flat_map(|section| section.points))
@@ -157,8 +157,9 @@ impl WallCurves {
         }
     }
 
-    /// How the wall leans between two heights, at corresponding points of its centre-lines: places halfway up, and the
-    /// angle from the build direction there, radians. A point that only slides along its line does not lean.
+    /// How the wall leans between two heights, at corresponding points of its centre-lines: positions at mid-height,
+    /// mm, and the angle from the build direction there, radians. A point that only slides along its line does not
+    /// lean.
     pub fn leans(&self, low: f64, high: f64) -> Vec<(DVec2, f64)> {
         let (lower, upper) = (self.paired(low), self.paired(high));
         let lean = |(lower, upper): (&Vec<DVec2>, &Vec<DVec2>)| -> Vec<(DVec2, f64)> {
@@ -238,7 +239,7 @@ impl Curve {
         (0..count).filter_map(place).collect()
     }
 
-    /// The same points, their start and direction matched to another curve: a closed curve begins at the same bearing
+    /// The same points, with start and direction matched to another curve: a closed curve begins at the same bearing
     /// from its middle and runs the same way round.
     fn turned_to(&self, other: &Self, count: usize) -> Vec<DVec2> {
         let (mut own, theirs) = (self.evenly(count), other.evenly(count));

@@ -1,4 +1,4 @@
-//! Walls given by their two sides: the middle line between them, and how thick they are (Li et al., section 2.1).
+//! Walls given by their two sides: the middle line between them, and the thickness (Li et al., section 2.1).
 
 use super::{Curve, WallCurves};
 use crate::curve::Nurbs;
@@ -6,14 +6,14 @@ use glam::{DVec2, DVec3};
 use planar::polyline;
 use serde::{Deserialize, Serialize};
 
-/// What the curves of a wall are.
+/// What the curves of a wall represent.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum CurvesAre {
     /// Its centre-lines: one bead is laid along each.
     Centre,
-    /// Its sides: one bead is laid in the middle between two of them.
+    /// Its sides: one bead is laid midway between two of them.
     Sides,
 }
 
@@ -26,19 +26,19 @@ pub struct Sides {
     pub thickness: (f64, f64),
 }
 
-/// The distance of the sides of a wall varies by no more than this factor; at a corner of the outer side it is √2 times as
-/// great.
+/// Greatest ratio of the largest to the least distance between two sides, measured from one of them; at a corner of the
+/// outer side the distance is √2 times as great.
 const EVEN: f64 = 1.35;
-/// From the other side, where it may be greater at corners.
+/// The same limit, in `within`, from the other side, where corners increase it.
 const AT_CORNERS: f64 = 1.5;
-/// Greatest distance of places at which the distance of two curves is measured, in distances of sides.
+/// Spacing of the points at which the distance of two curves is measured, in distances of sides.
 const STEP: f64 = 0.25;
-/// Middle lines keep within this of the middle, mm.
+/// Accuracy of middle lines, mm.
 const ERROR_MM: f64 = 0.005;
 
 impl WallCurves {
-    /// Curves of one height that run side by side, nowhere farther apart than `within` (mm): two beads would hardly have room.
-    /// A curve may be listed with several others.
+    /// Curves at one height that run side by side and are nowhere farther apart than `within` (mm), so that two beads
+    /// would hardly fit between them. A curve may be paired with several others.
     ///
     /// ```
     /// use bead_part::curve::Nurbs;
@@ -70,8 +70,8 @@ impl WallCurves {
         self.levels.iter().flat_map(of_level).collect()
     }
 
-    /// The middle lines between curves that run side by side within `within` (mm), at every height. `None` where a curve has
-    /// no partner, or several.
+    /// The middle lines between curves that run side by side within `within` (mm), at every height. `None` if a curve
+    /// has no partner, or several.
     pub fn between_sides(&self, within: f64) -> Option<Self> {
         let of_level = |(z, curves): &(f64, Vec<Curve>)| {
             let paths = paths(curves);
@@ -96,7 +96,8 @@ fn paths(curves: &[Curve]) -> Vec<Vec<DVec2>> {
     curves.iter().map(|curve| curve.path(ERROR_MM)).collect()
 }
 
-/// Pairs of curves that run side by side, the lower number first, with the least and the greatest distance between them.
+/// Pairs of curves that run side by side, the lower index first, with the least and the greatest distance between them,
+/// mm.
 fn pairs(curves: &[Curve], paths: &[Vec<DVec2>], within: f64) -> Vec<(usize, usize, (f64, f64))> {
     let mut pairs = Vec::new();
     for one in 0..curves.len() {
@@ -115,7 +116,7 @@ fn pairs(curves: &[Curve], paths: &[Vec<DVec2>], within: f64) -> Vec<(usize, usi
     pairs
 }
 
-/// Least and greatest distance of a line from another, mm; measuring ends where it is clear that they are no sides.
+/// Least and greatest distance of a line from another, mm; measuring stops once they cannot be sides.
 fn distances(line: &[DVec2], other: &[DVec2], within: f64) -> (f64, f64) {
     let (mut least, mut greatest) = (f64::INFINITY, 0.0_f64);
     for place in places(line, STEP * within) {
@@ -128,7 +129,7 @@ fn distances(line: &[DVec2], other: &[DVec2], within: f64) -> (f64, f64) {
     (least, greatest)
 }
 
-/// The points of a line, and places between them at most `apart` (mm) from each other.
+/// The points of a line, and points between them at most `apart` (mm) from each other.
 fn places(line: &[DVec2], apart: f64) -> impl Iterator<Item = DVec2> + '_ {
     let pieces = line.windows(2).flat_map(move |ends| {
         let count = (ends[0].distance(ends[1]) / apart).ceil().max(1.0);
@@ -142,8 +143,8 @@ fn nearest(place: DVec2, line: &[DVec2]) -> DVec2 {
     on_pieces.min_by(|a, b| place.distance_squared(*a).total_cmp(&place.distance_squared(*b))).unwrap_or(place)
 }
 
-/// The middle between two lines; along the one from which the distance varies less, since corners of the outer side lie
-/// farther away.
+/// The middle between two lines, measured along the one from which the distance varies less, since corners of the outer
+/// side are farther away.
 fn middle(one: &[DVec2], other: &[DVec2], within: f64) -> Vec<DVec2> {
     let spread = |(least, greatest): (f64, f64)| greatest - least;
     let (from, to) = if spread(distances(one, other, within)) <= spread(distances(other, one, within)) {
