@@ -8,16 +8,16 @@ use planar::{Bounds, Join, Polygon, Region};
 use serde::{Deserialize, Serialize};
 use std::borrow::Borrow;
 
-/// How warm the metal is on which a pass is laid, °C.
+/// Temperature of the metal on which a pass is laid, °C.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Temperature {
-    /// Where the pass begins, just before.
+    /// Where the pass begins, just before, °C.
     pub start: f64,
-    /// Just ahead of the torch, mean along the pass.
+    /// Just ahead of the torch, mean along the pass, °C.
     pub mean: f64,
 }
 
-/// Where the arc stays lit from layer to layer: the turns of a helix, each the only pass of its layer.
+/// Whether the arc stays lit between layers: the turns of a helix, each the only pass of its layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Lit {
     /// The pass continues that of the layer below.
@@ -27,18 +27,18 @@ pub struct Lit {
 }
 
 impl Lit {
-    /// The least metal of a piece of a turn, as a fraction of a whole bead's: with less the torch would be too fast.
+    /// The least metal of a piece of a turn, as a fraction of a full bead: with less, the torch would be too fast.
     pub const LEAST: f64 = 0.5;
 
-    /// Whether a layer is a turn of a helix: it rises from the layer below.
+    /// Whether a layer is a turn of a helix.
     pub fn is_turn(self) -> bool {
         self.before || self.after
     }
 
-    /// Lets every layer know whether the arc of the one below continues in it, as only that one says in files.
+    /// Sets `before` of every layer from `after` of the layer below, since files state only the latter.
     ///
     /// # Errors
-    /// The index of a layer that then has not just one pass.
+    /// The index of a layer that would then have other than exactly one pass.
     pub fn join(layers: &mut [Layer]) -> Result<(), usize> {
         let goes_on: Vec<bool> = layers.iter().map(|layer| layer.lit.after).collect();
         for (layer, before) in layers.iter_mut().zip(std::iter::once(false).chain(goes_on)) {
@@ -62,15 +62,15 @@ pub struct Layer {
     pub z: f64,
     /// Thickness, mm.
     pub height: f64,
-    /// Which of two layers with the same underside it is.
+    /// Whether it is one of two layers with the same underside, and which.
     pub half: Option<Half>,
     /// Outlines of the slice.
     pub islands: Vec<Polygon>,
-    /// Where it goes on around an axis beyond the edges at which it is cut open: metal there is not outside the part.
+    /// Areas around an axis beyond the edges at which the layer is cut open: metal there is not outside the part.
     pub beyond: Vec<Polygon>,
     /// Passes in deposition order; the arc is off between them.
     pub passes: Vec<Pass>,
-    /// Whether the arc burns before and after them.
+    /// Whether the arc stays lit before and after its passes.
     pub lit: Lit,
     /// Temperatures of the metal below each pass; empty where they were not computed.
     pub temperatures: Vec<Temperature>,
@@ -83,13 +83,13 @@ pub struct Layer {
 }
 
 impl Layer {
-    /// Height of its middle, mm; of two layers with the same underside, that of the pair.
+    /// Height of its middle, mm; for two layers with the same underside, the middle of the pair.
     pub fn middle(&self) -> f64 {
         middle(self.z, self.height, self.half)
     }
 }
 
-/// How many layers a part has, and where it lies.
+/// Number of layers and bounding box of a part.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Extent {
     /// Number of layers.
@@ -106,7 +106,7 @@ impl Extent {
         Bounds { min: self.low.truncate(), max: self.high.truncate() }
     }
 
-    /// That of passes alone, without the room that their beads take next to and below them.
+    /// The extent of the passes' points, without the width and height of their beads.
     pub fn of<L: Borrow<Layer>>(layers: &[L]) -> Self {
         let points = layers.iter().flat_map(|layer| &layer.borrow().passes).flat_map(|pass| &pass.points);
         let bounds = points.fold(None, |bounds: Option<(DVec3, DVec3)>, &p| {
@@ -122,15 +122,15 @@ impl Extent {
     }
 }
 
-/// What layers cover, seen from above: their passes and outlines.
+/// Bounds of layers seen from above: their passes and outlines.
 pub fn bounds(layers: &[Layer]) -> Option<Bounds> {
     let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
     let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points().iter().copied());
     Bounds::of(points.chain(outlines))
 }
 
-/// Where islands overhang those below by more than `reach` (mm): area (mm²) and a place; areas smaller than half a bead's
-/// `width` squared do not count.
+/// Where islands overhang those below by more than `reach` (mm): area (mm²) and a point; areas smaller than half of
+/// `width` (mm, of a bead) squared do not count.
 pub fn overhang(below: &[Polygon], above: &[Polygon], reach: f64, width: f64) -> Option<(f64, DVec2)> {
     /// Smaller areas do not count, in squared bead widths.
     const SMALLEST: f64 = 0.5;

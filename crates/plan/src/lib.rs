@@ -1,5 +1,6 @@
-//! What is welded, and what results: beads, passes and layers, fills and their order, the metal they lay and how hot it gets.
-//! Nothing here knows about profiles, robots or their languages; every stage has its settings in millimetres and seconds.
+//! What is welded and what results: beads, passes and layers, fills and their order, the metal they lay and how hot it
+//! gets. Nothing here knows about profiles, robots or their languages; the settings of every stage are in millimetres
+//! and seconds.
 //!
 //! | module | what it holds |
 //! | --- | --- |
@@ -7,14 +8,14 @@
 //! | [`process`] | wire, arc, speeds, gas, starts and stops |
 //! | [`motion`] | how long a path takes, with acceleration |
 //! | [`pass`], [`layer`] | a path in space with width and pace along it; a layer's slice and passes |
-//! | [`wedge`] | layers that are thicker at some places than at others |
+//! | [`wedge`] | layers of varying thickness |
 //! | [`fill`] | an island becomes paths: one file per strategy |
 //! | [`order`] | the paths of a layer in sequence, with their start points |
 //! | [`deposit`] | layers become a height field, with its voids and humps |
 //! | [`weld`] | passes with start and stop, and the moves between them |
 //! | [`heat`] | temperatures before and along passes, and waits within a limit |
-//! | [`limit`] | the range of every number of a profile, with its reason |
-//! | [`preform`] | a part plus the stock that is milled off afterwards, and the way up in which that costs least |
+//! | [`limit`] | the allowed range of every number in a profile, with its reason |
+//! | [`preform`] | a part plus the stock that is milled off afterwards, and the orientation in which that costs least |
 //! | [`random`] | seeded random numbers |
 
 pub mod bead;

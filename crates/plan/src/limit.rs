@@ -5,7 +5,7 @@
 pub struct Limit {
     /// Full key, such as `bead.width`.
     pub key: &'static str,
-    /// The value, or a starting value if the key is left out.
+    /// The value, or a starting value if the key is omitted.
     pub value: f64,
     /// Smallest possible value.
     pub least: f64,
@@ -67,12 +67,12 @@ macro_rules! section {
 }
 pub use section;
 
-/// A number of a profile, or none where the key is left out.
+/// A number of a profile; none if the key is omitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Given(Option<f64>);
 
 impl Given {
-    /// The number, or the middle of its range.
+    /// The number, or the middle of the range.
     pub fn or_between(self, least: f64, greatest: f64) -> f64 {
         self.0.unwrap_or(least.midpoint(greatest))
     }

@@ -3,7 +3,7 @@
 //! Along every piece of a path the speed over time is a trapezoid: up with the acceleration, along at the wanted speed,
 //! down again. At a corner the velocity may jump by at most the corner speed, so sharp corners are passed slowly and
 //! straight joints at full speed; a path begins and ends at rest. Without these values, as for robots whose controllers
-//! keep the speed, the time is length over speed.
+//! hold the speed, the time is length over speed.
 
 use crate::limit::{Limit, limits};
 use glam::DVec3;
@@ -82,7 +82,7 @@ impl Motion {
 
     fn trapezoid(&self, piece: &Piece, first: f64, last: f64) -> f64 {
         let a = self.acceleration;
-        // The speed that would be reached if the piece were all ramps.
+        // The peak speed if the piece were ramps only.
         let peak = ((2.0 * a * piece.length + first * first + last * last) / 2.0).sqrt();
         let top = peak.min(piece.speed).max(first).max(last);
         let ramps = (2.0 * top * top - first * first - last * last) / (2.0 * a);

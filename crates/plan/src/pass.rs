@@ -33,7 +33,8 @@ impl PassKind {
         }
     }
 
-    /// Pace, mm/s, of a pass of this width, mm, in a layer; `dot` is what the process lays where the torch stands still.
+    /// Pace, mm/s, of a pass of this width, mm, in a layer; `dot` is the dot that the process lays with the torch
+    /// standing still.
     pub fn pace(self, layer: &LayerPace<'_>, dot: Option<Dot>, width: f64) -> f64 {
         match (self, dot) {
             (Self::Spot, Some(dot)) => dot.pace(width),
@@ -77,7 +78,7 @@ impl Along {
         }
     }
 
-    /// Reverses the values together with the path: every piece keeps its own, the closing one included.
+    /// Reverses the values together with the path: every piece keeps its own value, including the closing piece.
     ///
     /// ```
     /// use bead_plan::pass::Along;
@@ -95,7 +96,7 @@ impl Along {
         }
     }
 
-    /// Adds a value for a new point on the piece after the point `index`.
+    /// Adds a value for a new point on the piece after point `index`.
     pub fn split(&mut self, index: usize) {
         if let Self::Each(values) = self
             && let Some(&value) = values.get(index)
@@ -127,7 +128,7 @@ pub struct Pass {
     /// Pace, mm/s: the speed at which the nominal wire feed lays the metal of a piece. [`Process::speed_at`] gives the
     /// speed of the torch.
     pub pace: Along,
-    /// How long the torch waits before it, s, so that the metal below can cool.
+    /// Time the torch waits before it, s, so that the metal below can cool.
     pub wait: f64,
 }
 
@@ -185,7 +186,7 @@ impl Pass {
         if self.closed { self.points.first().copied() } else { self.points.last().copied() }
     }
 
-    /// Begins a closed pass at the point with this index; an open one stays as it is.
+    /// Makes a closed pass begin at the point with this index; an open one is unchanged.
     pub fn begin_at(&mut self, index: usize) {
         if self.closed && index < self.points.len() {
             self.points.rotate_left(index);
@@ -194,7 +195,7 @@ impl Pass {
         }
     }
 
-    /// Turns an open pass around; a closed one stays as it is.
+    /// Reverses an open pass; a closed one is unchanged.
     pub fn reverse(&mut self) {
         if !self.closed {
             self.points.reverse();
@@ -220,7 +221,7 @@ impl Pass {
         self.segments().map(|s| s.length()).sum()
     }
 
-    /// The part of the pass from one distance along it to another, mm; a closed one goes around again.
+    /// The part of the pass between two distances along it, mm; on a closed one they may go beyond its start.
     ///
     /// ```
     /// use bead_plan::pass::{Along, Pass, PassKind};
@@ -247,7 +248,7 @@ impl Pass {
         self.of_pieces(&kept)
     }
 
-    /// The same pass, but open and along pieces each of which begins where the one before it ends.
+    /// The same pass, but open and along the given pieces, each of which must begin where the one before it ends.
     pub fn of_pieces(&self, pieces: &[Segment]) -> Self {
         let points = pieces.first().map(|s| s.from).into_iter().chain(pieces.iter().map(|s| s.to)).collect();
         // A value applies from its point to the next.
@@ -256,7 +257,7 @@ impl Pass {
         Self { kind: self.kind, closed: false, points, width, pace, wait: self.wait }
     }
 
-    /// Turns sharper than 30° from one piece to the next.
+    /// Number of turns sharper than 30° from one piece to the next.
     pub fn turns(&self) -> usize {
         const COS_30: f64 = 0.866_025;
         let way = |s: &Segment| (s.to - s.from).normalize_or_zero();

@@ -17,7 +17,7 @@ impl Random {
         Self(seed)
     }
 
-    /// A number of 64 bits.
+    /// A random number of 64 bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -26,19 +26,19 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number in 0..n.
+    /// A random number in 0..n.
     pub fn below(&mut self, n: usize) -> usize {
         ((u128::from(self.bits()) * n as u128) >> 64) as usize
     }
 
-    /// A number in 0.0..1.0.
+    /// A random number in 0.0..1.0.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number from the normal distribution of mean 0 and deviation 1 (Box and Muller 1958).
+    /// A random number from the standard normal distribution (Box and Muller 1958).
     pub fn normal(&mut self) -> f64 {
-        // In 0.0..1.0 less its lower end, whose logarithm is not finite.
+        // In the interval (0, 1], since the logarithm of 0 is not finite.
         let (radius, turn) = (1.0 - self.unit(), self.unit());
         (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * turn).cos()
     }

@@ -1,11 +1,12 @@
-//! Layers that are thicker at some places than at others: wedges of a guide.
+//! Layers of varying thickness: wedges of a guide.
 //!
-//! Everything between slicing and welding sees a layer of even thickness. Only at the end, more metal is laid where it is thicker
-//! ([`Wedge::laid`]); the deposit model, which looks at the chart, is shown it as it was before ([`Wedge::even`]).
+//! Everything between slicing and welding sees a layer of even thickness. Only at the end is metal added where the
+//! layer is thicker ([`Wedge::laid`]); the deposit model, which takes the chart into account, gets the passes from
+//! before that ([`Wedge::even`]).
 //!
-//! How thin and how thick a bead can be is limited. Where a bend is so tight that the outer side of a layer would be too thick, that side is
-//! welded in two layers, of which the lower covers it alone: the upper one has the same underside, and half of its thickness where
-//! the lower one lies ([`Half`]).
+//! The thickness of a bead is limited. Where a bend is so tight that the outer side of a layer would be too thick, that
+//! side is welded in two layers. The lower one covers only that side; the upper one has the same underside, and half of
+//! its thickness where the lower one lies ([`Half`]).
 
 use crate::layer::Layer;
 use crate::pass::{Along, Pass, Segment};
@@ -15,53 +16,53 @@ use bead_part::warning::{Warning, WarningKind};
 use glam::DVec2;
 use planar::{Polygon, Ring};
 
-/// Pieces along which a layer's thickness changes by more than this part are divided.
+/// Pieces along which a layer's thickness changes by more than this fraction are divided.
 const STEP: f64 = 0.03;
-/// Nothing is thinner than this part of its layer, so that paces stay finite; such layers are refused.
+/// Least thickness of a bead, as a fraction of its layer, so that paces stay finite; thinner layers are refused.
 pub const THINNEST: f64 = 0.05;
-/// Where the rise differs by no more than this from that at an edge, the edge is near.
+/// An edge is near where the rise differs from that at the edge by at most this.
 const AT_EDGE: f64 = 0.02;
-/// Points of a piece lie farther apart than this part of its steps.
+/// Least distance of two division points of a piece, as a fraction of its step.
 const APART: f64 = 0.05;
-/// A layer may leave its window by this part, which is what rounding to whole layers takes.
+/// A layer may leave its window by this fraction, to allow for rounding to whole layers.
 pub const TOLERANCE: f64 = 0.03;
 
-/// The thickness of a layer that is not the same everywhere.
+/// A layer of varying thickness.
 pub struct Wedge<'a> {
     sheet: Sheet<'a>,
-    /// As in the chart, mm.
+    /// Thickness in the chart, mm.
     height: f64,
-    /// Thinnest and thickest that it may be, mm.
+    /// Least and greatest thickness of a bead, mm.
     window: (f64, f64),
     half: Option<Half>,
 }
 
 impl<'a> Wedge<'a> {
-    /// The wedge that a layer of a chart is, whose beads may be as thin and as thick as `window` says, mm; `None` where layers are
-    /// even.
+    /// The wedge of a layer in a chart; `window` is the least and the greatest thickness of its beads, mm. `None` where
+    /// layers are even.
     pub fn of(layer: &Layer, chart: &'a Chart, window: (f64, f64)) -> Option<Self> {
         let sheet = chart.has_wedges().then(|| chart.sheet(layer.middle()))?;
         Some(Self { sheet, height: layer.height, window, half: layer.half })
     }
 
-    /// Thickness of the beads at a place, mm.
+    /// Thickness of the beads at a point, mm.
     fn thickness(&self, p: DVec2) -> f64 {
         self.height * self.sheet.rise(p) / self.parts(p)
     }
 
-    /// The rise from which on the lower of two layers lies below.
+    /// The rise above which the lower of two layers lies below this one.
     fn thick(&self) -> Option<f64> {
         (self.half == Some(Half::Upper)).then_some(self.window.1 / self.height)
     }
 
-    /// Whether a piece crosses the edge of the lower of two layers or lies near it: its own metal changes there.
+    /// Whether a piece crosses or nearly touches the edge of the lower of two layers, where its own metal changes.
     pub fn is_on_edge(&self, piece: &Segment) -> bool {
         let Some(thick) = self.thick() else { return false };
         let [from, to] = [piece.from, piece.to].map(|p| self.sheet.rise(p.truncate()) - thick);
         from * to <= 0.0 || from.abs().min(to.abs()) < AT_EDGE
     }
 
-    /// How much more metal a piece needs than one of a layer of even thickness that is filled as usual.
+    /// The metal of a piece, relative to a piece in a layer of even thickness `usual` (mm).
     pub fn thicker(&self, piece: &Segment, usual: f64) -> f64 {
         let middle = piece.from.midpoint(piece.to).truncate();
         let own = if self.half.is_some() { self.own(middle) / usual } else { 1.0 };
@@ -72,12 +73,12 @@ impl<'a> Wedge<'a> {
         if self.thick().is_some_and(|thick| self.sheet.rise(p) > thick) { 2.0 } else { 1.0 }
     }
 
-    /// What of the height of the layer in the chart its own beads fill at a place, mm.
+    /// The part of the layer's thickness in the chart that its own beads fill at a point, mm.
     pub fn own(&self, p: DVec2) -> f64 {
         self.height / self.parts(p)
     }
 
-    /// Passes of the usual height (mm), the two layers of a pair with the metal that each needs.
+    /// Gives passes planned for the thickness `usual` (mm) the metal that each of the two layers of a pair needs.
     pub fn paired(&self, passes: &mut [Pass], usual: f64) {
         if self.half.is_some() {
             let pace = |pace: f64, p: DVec2| pace * usual / self.own(p);
@@ -85,32 +86,32 @@ impl<'a> Wedge<'a> {
         }
     }
 
-    /// Back from [`Self::paired`].
+    /// Inverse of [`Self::paired`].
     pub fn single(&self, passes: &mut [Pass], usual: f64) {
         if self.half.is_some() {
             passes.iter_mut().for_each(|pass| *pass = each_paced(pass, |pace, p| pace * self.own(p) / usual));
         }
     }
 
-    /// Passes with the metal of the wedge.
+    /// Gives passes the metal of the wedge.
     pub fn laid(&self, passes: &mut [Pass]) {
         let rise = |p| self.sheet.rise(p).max(THINNEST);
         passes.iter_mut().for_each(|pass| *pass = paced(pass, |pace, p| pace / rise(p), &self.sheet, None));
     }
 
-    /// Back from [`Self::laid`].
+    /// Inverse of [`Self::laid`].
     pub fn even(&self, passes: &mut [Pass]) {
         let rise = |p| self.sheet.rise(p).max(THINNEST);
         passes.iter_mut().for_each(|pass| *pass = each_paced(pass, |pace, p| pace * rise(p)));
     }
 
-    /// Volume of the whole wedge, with what the lower of two holds of it, mm³.
+    /// Volume of the whole wedge, including the share of the lower of two layers, mm³.
     pub fn volume(&self, islands: &[Polygon]) -> f64 {
         let of = |ring: &Ring| ring.area() * ring.centroid().map_or(1.0, |at| self.sheet.rise(at));
         self.height * islands.iter().flat_map(Polygon::rings).map(of).sum::<f64>()
     }
 
-    /// A warning of the place at which the layer leaves its window farthest.
+    /// A warning at the point where the layer leaves its window farthest; `None` if it does not.
     pub fn doubt(&self, layer: &Layer) -> Option<Warning> {
         let (thinnest, thickest) = (self.window.0 * (1.0 - TOLERANCE), self.window.1 * (1.0 + TOLERANCE));
         let off = |p: &DVec2| (self.thickness(*p) - thickest).max(thinnest - self.thickness(*p));
@@ -121,7 +122,7 @@ impl<'a> Wedge<'a> {
     }
 }
 
-/// A pass with another pace everywhere, divided where the thickness of its layer changes, and where `thick` begins.
+/// A pass with changed paces, divided where the thickness of its layer changes, and where the rise passes `thick`.
 fn paced(pass: &Pass, pace: impl Fn(f64, DVec2) -> f64, sheet: &Sheet<'_>, thick: Option<f64>) -> Pass {
     let (mut points, mut widths, mut paces) = (Vec::new(), Vec::new(), Vec::new());
     for piece in pass.segments() {
@@ -142,7 +143,7 @@ fn paced(pass: &Pass, pace: impl Fn(f64, DVec2) -> f64, sheet: &Sheet<'_>, thick
     Pass { points, width: along(widths), pace: along(paces), ..pass.clone() }
 }
 
-/// Where the parts of a piece begin between whose ends the rise changes, as parts of its length.
+/// Start of each part of a piece along which the rise changes between the given values, as fractions of its length.
 fn parts([from, to]: [f64; 2], thick: Option<f64>) -> Vec<f64> {
     let count = ((to / from).ln().abs() / STEP).ceil().max(1.0);
     let mut parts: Vec<f64> = (0..count as usize).map(|k| k as f64 / count).collect();
@@ -154,7 +155,7 @@ fn parts([from, to]: [f64; 2], thick: Option<f64>) -> Vec<f64> {
     parts
 }
 
-/// A pass with another pace on each of its pieces.
+/// A pass with a changed pace on each of its pieces.
 fn each_paced(pass: &Pass, pace: impl Fn(f64, DVec2) -> f64) -> Pass {
     let mut paces: Vec<f64> =
         pass.segments().map(|piece| pace(piece.pace, piece.from.midpoint(piece.to).truncate())).collect();

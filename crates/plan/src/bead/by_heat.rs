@@ -1,10 +1,10 @@
-//! How a bead changes with the heat of the metal below: on warm metal the same wire gives a wider and lower one.
+//! How a bead changes with the temperature of the metal below: on warm metal the same wire gives a wider and lower one.
 
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
 
-/// No bead is assumed to become narrower, wider, lower or higher by more than these factors: walls welded without any
-/// wait change by 1.4 in width.
+/// Smallest and largest factor by which a bead's width or height is assumed to change: walls welded without any wait
+/// change by 1.4 in width.
 const CHANGES: (f64, f64) = (0.5, 2.0);
 
 /// How a bead changes with the temperature of the metal just ahead of the torch, at the same wire feed and speed; linear,
@@ -13,11 +13,11 @@ const CHANGES: (f64, f64) = (0.5, 2.0);
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BeadByHeat {
-    /// Temperature of the metal ahead of the torch at which the bead is as wide and as high as `bead` says, °C.
+    /// Temperature of the metal ahead of the torch at which the bead has the width and height given in `bead`, °C.
     pub temperature: f64,
     /// Change of the bead's width, mm/K.
     pub width: f64,
-    /// Change of the thickness of a layer of a wall with one bead per layer, mm/K; below 0 where warm metal spreads.
+    /// Change of the thickness of a layer of a wall with one bead per layer, mm/K; negative where warm metal spreads.
     pub rise: f64,
 }
 

@@ -59,7 +59,7 @@ impl Law {
             Self::ConstantRatio => return nominal.width * (area / nominal.area()).sqrt(),
             Self::Library(_) => {}
         }
-        // The area grows with the width.
+        // The area increases with the width.
         let (mut low, mut high) = (0.0, nominal.width);
         while self.bead(nominal, high).area() < area && high < 1e3 * nominal.width {
             high *= 2.0;

@@ -1,4 +1,4 @@
-//! The bead: its parabolic cross-section, the distance between neighbours, and the balance of wire and bead.
+//! The bead: its cross-section, the distance between neighbours, and the balance of wire and bead.
 //!
 //! | file | what it holds |
 //! | --- | --- |
@@ -6,7 +6,7 @@
 //! | [`pace`] | the speed at which the wire lays the metal of a bead |
 //! | [`section`] | the shape of its cross-section |
 //! | [`wall`] | how high walls with one bead per layer grow |
-//! | [`by_heat`] | how it changes with the heat of the metal below |
+//! | [`by_heat`] | how it changes with the temperature of the metal below |
 //! | [`library`] | width and height fitted to measured beads, and the parameters for a wanted bead |
 
 pub mod by_heat;
@@ -59,7 +59,7 @@ impl Bead {
         self.area() / stepover
     }
 
-    /// The bead of this width and section whose layer at `stepover` rises by `layer_height` (all mm).
+    /// The bead of this width and section whose closed layer at `stepover` has the height `layer_height` (all mm).
     ///
     /// ```
     /// use bead_plan::bead::Bead;
@@ -99,14 +99,14 @@ impl Overlap {
     }
 }
 
-/// Metal that the wire feeds in compared with metal in the bead, per second.
+/// Metal fed by the wire compared with metal in the bead, per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MassBalance {
     /// Metal from the wire, mm³/s.
     pub wire: f64,
     /// Metal in the bead, mm³/s.
     pub bead: f64,
-    /// Deposition speed at which both agree, mm/s.
+    /// Deposition speed at which the two agree, mm/s.
     pub fitting_speed: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The pace of beads: the speed at which the nominal wire feed lays the metal that each of them needs.
+//! The pace of beads: the speed at which the nominal wire feed lays the metal that each one needs.
 
 use super::wall::WallBead;
 use super::{Bead, Law};
@@ -14,10 +14,10 @@ pub struct PaceSettings<'a> {
     pub nominal: f64,
     /// Distance between neighbouring centre-lines, mm.
     pub stepover: f64,
-    /// The wall that is predicted from the beads; `None` where walls are not predicted.
+    /// The wall predicted from the beads; `None` where walls are not predicted.
     pub wall: Option<WallBead>,
-    /// Thickness, mm, of the layer that nominal beads fill, where thicker and thinner layers get the metal that fills them;
-    /// `None` where beads hold the same metal in every layer.
+    /// Thickness, mm, of a layer that nominal beads fill exactly, if thicker and thinner layers get correspondingly
+    /// more or less metal; `None` if beads hold the same metal in every layer.
     pub filled: Option<f64>,
 }
 
@@ -57,7 +57,7 @@ pub struct LayerPace<'a> {
     bead: Bead,
     law: &'a Law,
     nominal: f64,
-    /// How many times thinner the layer is than one that nominal beads fill.
+    /// Thickness of a layer that nominal beads fill, over that of this layer.
     thinner: f64,
     rise: Option<f64>,
 }
@@ -68,13 +68,13 @@ impl LayerPace<'_> {
         self.rise
     }
 
-    /// Pace, mm/s, of a bead of this width, mm, beside others: the law of the bead holds.
+    /// Pace, mm/s, of a bead of this width, mm, beside others, by the bead law.
     pub fn of_bead(&self, width: f64) -> f64 {
         self.nominal * self.thinner * self.law.pace(&self.bead, width)
     }
 
-    /// Pace, mm/s, of a bead that is a wall of this width, mm: its metal fills the width over what the layer adds. Where walls
-    /// are not predicted, that of any bead.
+    /// Pace, mm/s, of a bead that is a wall of this width, mm: its metal fills that width over the rise of the layer.
+    /// Where walls are not predicted, the pace of any bead.
     pub fn of_wall(&self, width: f64) -> f64 {
         match self.rise {
             Some(rise) => self.nominal * self.bead.area() / (width * rise),

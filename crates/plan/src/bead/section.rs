@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_4;
 
-/// Fraction of a stadium's squared height by which its area is smaller than that of the box around it.
+/// A stadium's area is less than that of the box around it by this fraction of its squared height.
 const CORNERS: f64 = 1.0 - FRAC_PI_4;
 
 /// The shape of a bead's cross-section.
@@ -16,7 +16,7 @@ pub enum Section {
     Parabola,
     /// Half an ellipse: π/4 of the box around it.
     Ellipse,
-    /// Flat, with round sides, as a nozzle leaves it: the box less (1 − π/4) h².
+    /// Flat with round sides, as left by a nozzle: the box less (1 − π/4) h².
     Stadium,
 }
 
@@ -37,7 +37,7 @@ impl Section {
         match self {
             Self::Parabola => 2.0 / 3.0 * width * height,
             Self::Ellipse => FRAC_PI_4 * width * height,
-            // One that is higher than wide is a circle flattened from the sides: never less than nothing.
+            // One that is higher than wide is a circle squeezed from the sides: its area never becomes negative.
             Self::Stadium => height * (width - CORNERS * height.min(width)),
         }
     }

@@ -8,7 +8,7 @@
 //! of the cap only for λ ≥ 2; θ₁ = 2 atan(2h₁/B₁) is the same there, and right for higher beads too. For λ above
 //! 2.62 the second bead reaches below the foot of the first; that does not affect the wall above it.
 //!
-//! The wire decides: [`WallBead::for_wall`] takes the metal of a bead and the thickness of the wall, so that the metal
+//! The wire decides: [`WallBead::for_wall`] takes the area of a bead and the thickness of the wall, so that the metal
 //! fed is the metal of the wall, and finds B₁ and h₁. The wall's mean thickness is 0.98 to 1.03 B₁ for λ from 2 to 2.7.
 
 use std::f64::consts::FRAC_PI_2;
@@ -114,7 +114,7 @@ impl WallBead {
         bead
     }
 
-    /// The wall of beads of `width` (mm) whose vertical layers rise by `rise` (mm).
+    /// The wall of beads of `width` B₁ (mm) whose vertical layers rise by `rise` h_n (mm).
     ///
     /// # Errors
     /// [`WallError::Size`] for an impossible width, [`WallError::Rise`] where no accepted λ gives that rise.
@@ -130,8 +130,8 @@ impl WallBead {
         Ok(of_ratio(ratio_where(|ratio| of_ratio(ratio).rise <= rise)))
     }
 
-    /// The wall of mean `thickness` (mm) of beads of `area` (mm²): the metal of a bead fills the rise of a layer, so its
-    /// layers are `area`/`thickness` high.
+    /// The wall of mean `thickness` (mm) made of beads of `area` (mm²): the metal of a bead fills the rise of a layer,
+    /// so its layers are `area`/`thickness` high.
     ///
     /// ```
     /// use bead_plan::bead::wall::WallBead;
@@ -149,7 +149,7 @@ impl WallBead {
         if !possible(thickness) || !possible(area) {
             return Err(WallError::Size { width: thickness, height: area / thickness });
         }
-        // Thickness over rise grows with λ alone, whatever the size.
+        // Thickness over rise depends on λ alone and increases with it.
         let slender = |ratio: f64| Self::solved(1.0, 1.0 / ratio).slenderness();
         let (wanted, least) = (thickness * thickness / area, slender(Self::RATIOS.0));
         if !(least..=slender(Self::RATIOS.1)).contains(&wanted) {
@@ -175,8 +175,8 @@ impl WallBead {
         self.width / self.height
     }
 
-    /// Mean thickness of the wall above the first bead, mm, over the waves of its sides: what a bead holds over what a
-    /// layer rises.
+    /// Mean thickness of the wall above the first bead, mm, averaged over the waves of its sides: area of a bead over
+    /// rise of a layer.
     pub fn thickness(&self) -> f64 {
         self.area() / self.rise
     }
@@ -206,19 +206,19 @@ impl WallBead {
         self.radius().powi(2) * unit_cap(self.cap_angle())
     }
 
-    /// h_n, mm: what every layer after the first adds to a vertical wall (eq 5).
+    /// h_n, mm: the rise of every layer after the first in a vertical wall (eq 5).
     pub fn rise(&self) -> f64 {
         self.rise
     }
 
-    /// What layer `index` (from 0) of that thickness (mm) adds to the wall, mm. The first is thicker than what it adds: the bead
-    /// on the substrate is a cap, higher than the others but with the same metal.
+    /// Rise of layer `index` (from 0) of this thickness (mm) in the wall, mm. The first layer is thicker than its rise:
+    /// the bead on the substrate is a cap, higher than the others but of the same area.
     pub fn rise_of_layer(&self, index: usize, thickness: f64) -> f64 {
         if index == 0 { self.rise } else { thickness }
     }
 
-    /// What a layer adds in height, mm, where the wall leans by `lean` (radians) from the build direction: h_n cos φ.
-    /// The paper's eq (8) prints h_n sin α, which is this with α measured from the horizontal plane.
+    /// Rise of a layer, mm, where the wall leans by `lean` (radians) from the build direction: h_n cos φ. The paper's
+    /// eq (8) prints h_n sin α, which is the same with α measured from the horizontal.
     pub fn rise_leaning(&self, lean: f64) -> f64 {
         self.rise * lean.cos()
     }
@@ -228,7 +228,7 @@ impl WallBead {
         if layers == 0 { 0.0 } else { self.height + (layers - 1) as f64 * self.rise }
     }
 
-    /// The number of vertical layers, at least one, whose total comes nearest to `height` (mm).
+    /// The number of vertical layers, at least one, whose total height is nearest to `height` (mm).
     pub fn layers_for(&self, height: f64) -> usize {
         (1.0 + ((height - self.height) / self.rise).round()).max(1.0) as usize
     }
@@ -252,7 +252,7 @@ impl WallBead {
     }
 }
 
-/// The least accepted λ at which `reached` holds, which does from there on.
+/// The least accepted λ from which on `reached` holds.
 fn ratio_where(reached: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = WallBead::RATIOS;
     while high - low > 2.0 * f64::EPSILON * high {
@@ -267,8 +267,9 @@ fn unit_cap(theta: f64) -> f64 {
     theta - theta.sin() * theta.cos()
 }
 
-/// δ = π/2 − θn from eq (6), which is 2δ + sin 2δ = `area`, for areas from 0 to π. Newton's steps kept in a bracket:
-/// the left side rises throughout, with slope 0 only at its end. Exact to a few roundings of δ, however flat the bead.
+/// δ = π/2 − θn from eq (6), which reads 2δ + sin 2δ = `area`, for areas from 0 to π. Newton's steps within a bracket:
+/// the left side increases throughout, with slope 0 only at its end. Accurate to a few roundings of δ, however flat the
+/// bead.
 fn lens_complement(area: f64) -> f64 {
     let (mut low, mut high) = (0.0, FRAC_PI_2);
     let mut delta = (area / 4.0).min(high);

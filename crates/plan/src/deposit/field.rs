@@ -1,7 +1,7 @@
-//! The height field of a layer on a grid, every point in double precision, computed in bands of rows: each band looks
-//! only at the pieces of bead that reach it, bands run in parallel, and none is kept unless asked for.
+//! The height field of a layer on a grid, every point in double precision, computed in bands of rows. Each band
+//! considers only the pieces of bead that reach it; bands run in parallel, and none is kept unless asked for.
 //!
-//! This is the reference: a [`Judge`](super::Judge) computes the same figures the quick way (`tiles`).
+//! This is the reference: a [`Judge`](super::Judge) computes the same figures faster (`tiles`).
 
 use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke};
 use crate::bead::Section;
@@ -10,7 +10,7 @@ use planar::Bounds;
 use rayon::prelude::*;
 use std::ops::{Add, Mul, Range};
 
-/// A band holds about this many points, so that it stays in the cache.
+/// Approximate number of points in a band, so that it stays in the cache.
 const BAND_POINTS: usize = 1 << 14;
 
 /// Points at whole multiples of the step, so that the grids of all layers coincide.
@@ -35,7 +35,7 @@ impl Grid {
         Self { step, low, columns: size.x as usize, rows: size.y as usize }
     }
 
-    /// Place of a point, mm.
+    /// Position of a point, mm.
     pub fn place(&self, column: usize, row: usize) -> DVec2 {
         (self.low + I64Vec2::new(column as i64, row as i64)).as_dvec2() * self.step
     }
@@ -45,7 +45,7 @@ impl Grid {
         self.columns * self.rows
     }
 
-    /// The point nearest to a place (mm); `None` beyond the grid.
+    /// The index of the point nearest to a position (mm); `None` beyond the grid.
     pub fn nearest(&self, place: DVec2) -> Option<usize> {
         let at = (place / self.step).round().as_i64vec2() - self.low;
         let within = at.cmpge(I64Vec2::ZERO).all() && at.x < self.columns as i64 && at.y < self.rows as i64;
@@ -74,7 +74,7 @@ impl Grid {
     }
 }
 
-/// Rounded up, for what is not negative; without a call into the mathematics library.
+/// Rounds up, for values that are not negative; without a call into the maths library.
 pub(super) fn up(x: f64) -> usize {
     let down = x as usize;
     down + usize::from(x > down as f64)
@@ -119,12 +119,12 @@ pub struct Band<'a, H = f64> {
     pub columns: Range<usize>,
     /// Heights, mm, row after row.
     pub heights: Vec<H>,
-    /// Number of points computed, summed over the pieces.
+    /// Number of point evaluations, summed over the pieces.
     pub work: usize,
 }
 
 impl<'a, H: Height> Band<'a, H> {
-    /// Without metal.
+    /// A band without metal.
     pub(super) fn bare(grid: &'a Grid, rows: Range<usize>, columns: Range<usize>) -> Self {
         let heights = vec![H::default(); rows.len() * columns.len()];
         Self { grid, first: rows.start, columns, heights, work: 0 }
@@ -135,7 +135,7 @@ impl<'a, H: Height> Band<'a, H> {
         self.heights.chunks(self.columns.len().max(1)).enumerate().map(|(k, row)| (self.first + k, row))
     }
 
-    /// The parts of stretches of columns, from left to right, that lie in the band, counted from the band's first column.
+    /// The sections of column ranges, from left to right, that lie in the band, counted from the band's first column.
     pub(super) fn parts<'s>(
         &self,
         stretches: &'s [Range<usize>],
@@ -145,15 +145,15 @@ impl<'a, H: Height> Band<'a, H> {
         reaching.map(|stretch| self.within(stretch))
     }
 
-    /// The part of some columns of the grid that lies in the band, counted from the band's first column.
+    /// The section of a column range that lies in the band, counted from the band's first column.
     pub(super) fn within(&self, columns: &Range<usize>) -> Range<usize> {
         let at = |column: usize| column.clamp(self.columns.start, self.columns.end) - self.columns.start;
         at(columns.start)..at(columns.end).max(at(columns.start))
     }
 }
 
-/// Computes all bands of a layer and hands each to `visit`. The answers of `visit` come back in order from the lowest
-/// band to the highest, whatever the number of threads.
+/// Computes all bands of a layer and passes each to `visit`. The results come back in order from the lowest band to the
+/// highest, whatever the number of threads.
 pub fn bands<R: Send>(strokes: &[Stroke], grid: &Grid, visit: impl Fn(Band<'_>) -> R + Sync) -> Vec<R> {
     let frames: Vec<Frame> = strokes.iter().filter_map(Stroke::frame).collect();
     let height = grid.band_rows();

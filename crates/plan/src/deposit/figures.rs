@@ -1,4 +1,4 @@
-//! Areas and heights of a layer, or of many.
+//! Areas and heights of one layer or many.
 
 use super::field::{Band, Grid, Height};
 use super::patch::Run;
@@ -23,7 +23,7 @@ pub struct Figures {
     /// Overfilled area.
     #[serde(rename = "overfill_area_mm2")]
     pub overfill: f64,
-    /// Area with metal outside the outline and its allowance.
+    /// Area with metal outside the outline and the machining allowance.
     #[serde(rename = "outside_area_mm2")]
     pub outside: f64,
     /// Volume of the beads, mm³.
@@ -38,7 +38,7 @@ pub struct Figures {
     /// Height times area, mm³.
     #[serde(skip)]
     sum: f64,
-    /// Squared height times area.
+    /// Squared height times area, mm⁴.
     #[serde(skip)]
     squares: f64,
 }
@@ -63,7 +63,7 @@ impl Figures {
         Self { outside: f64::from(outside) * cell, ..tally.figures(cell) }
     }
 
-    /// The figures of a square of ridges with its voids and humps.
+    /// The figures of a square of ridges, including its voids and humps.
     pub(super) fn of_ridges(square: &Square, ridges: &Ridges, runs: &[Run], grid: &Grid) -> Self {
         let cell = grid.step * grid.step;
         let area = (square.rows.len() * square.columns.len()) as f64 * cell;
@@ -116,7 +116,7 @@ impl Figures {
         self.percent(self.overfill)
     }
 
-    /// Area with metal outside, % of the judged area.
+    /// Area with metal outside, as % of the judged area.
     pub fn outside_percent(&self) -> f64 {
         self.percent(self.outside)
     }
@@ -132,7 +132,7 @@ impl Figures {
         if self.area > 0.0 { (self.squares / self.area - mean * mean).max(0.0).sqrt() } else { 0.0 }
     }
 
-    /// All figures for machines, the percentages among them.
+    /// All figures, percentages included, as JSON.
     pub fn summary(&self) -> serde_json::Value {
         let mut value = serde_json::json!(self);
         value["void_percent"] = self.void_percent().into();
@@ -149,7 +149,7 @@ impl Figures {
     }
 }
 
-/// All of [`Figures`], for `serde(with)`: with the sums that their own serialization, which is read by people, leaves out.
+/// Serializes all of [`Figures`], for `serde(with)`, including the sums that their own serialization for people omits.
 pub mod whole {
     use super::Figures;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -174,14 +174,14 @@ pub mod whole {
     }
 }
 
-/// Heights are added up side by side in this many sums, as the processor does; the order never changes.
+/// Heights are summed in this many parallel sums, as in SIMD; the order never changes.
 const LANES: usize = 8;
-/// This many heights are added up in their own precision.
+/// This many heights are summed in their own precision.
 const MOST_ADDED: usize = 64;
 
-/// The points of the judged area.
+/// Sums over the points of the judged area.
 struct Tally<H> {
-    /// Below which a point is a void, below which it is low, and above which it is overfilled.
+    /// Limits, mm: below the first a point is a void, below the second it is low, above the third overfilled.
     limits: [H; 3],
     points: usize,
     counts: [[u32; LANES]; 3],
@@ -206,7 +206,7 @@ impl<H: Height> Tally<H> {
 
     fn add(&mut self, heights: &[H]) {
         self.points += heights.len();
-        // A few dozen points are added up in their own precision, more in double.
+        // A few dozen points are summed in their own precision, longer sums in double.
         heights.chunks(MOST_ADDED).for_each(|heights| self.add_few(heights));
     }
 

@@ -1,9 +1,9 @@
 //! One piece of bead laid onto a rectangle of the height field in single precision: the closed forms of
 //! [`stroke`](super::stroke) with lengths in half bead widths, straight-line code that becomes vector instructions.
 //!
-//! Places are taken in double precision at the beginning of each row and stepped from there, so that a part far from
-//! the origin loses nothing. The error of a piece stays below 1e-4 of its height: a piece of 1000 half
-//! bead widths has the place of its far end to 6e-5 of one.
+//! Positions are computed in double precision at the start of each row and stepped from there, so a part far from the
+//! origin loses no accuracy. The error of a piece stays below 1e-4 of its height: the far end of a piece of 1000 half
+//! bead widths is accurate to 6e-5 of one.
 
 use super::field::Band;
 use super::stroke::{Domed, Even, Frame, Rimmed};
@@ -11,7 +11,7 @@ use crate::bead::Section;
 use std::f32::consts::{FRAC_1_PI, FRAC_PI_2};
 use std::ops::Range;
 
-/// A rectangle has no more columns than this.
+/// Most columns of a rectangle.
 pub(super) const MOST_COLUMNS: usize = 512;
 
 /// 0, 1, 2, …: how far each column lies from the first.
@@ -25,7 +25,7 @@ static RAMP: [f32; MOST_COLUMNS] = {
     ramp
 };
 
-/// Adds a piece.
+/// Adds a piece to the band.
 pub(super) fn add(frame: &Frame, band: &mut Band<'_, f32>) {
     match frame.section {
         Section::Parabola => lay::<Domed>(frame, band),
@@ -41,7 +41,7 @@ fn lay<F: Pool>(frame: &Frame, band: &mut Band<'_, f32>) {
     let (a, b) = (frame.from.y, frame.from.y + frame.along.y * frame.length);
     let row_of = |y: f64| (grid.row_at(y) - first as f64).max(0.0) as usize;
     let rows = row_of(a.min(b) - frame.a)..(row_of(a.max(b) + frame.a) + 1).min(band.heights.len() / width);
-    // Along and across, of the first column.
+    // Position of the first column along and across the piece.
     let d = grid.place(band.columns.start, first) - frame.from;
     let (along, across) = (d.dot(way), way.perp_dot(d));
     for k in rows {
@@ -57,19 +57,20 @@ fn lay<F: Pool>(frame: &Frame, band: &mut Band<'_, f32>) {
     }
 }
 
-/// This many columns are computed side by side.
+/// Columns computed side by side.
 const LANES: usize = 8;
-/// In pieces longer than this, in half bead widths, the corners next to the round ends cost less than finding where they begin.
+/// In pieces longer than this, in half bead widths, it is cheaper to compute the corners beside the round ends than to
+/// find where they begin.
 const SHORT: f32 = 4.0;
 
-/// A piece of bead in half bead widths.
+/// A piece of bead, with lengths in half bead widths.
 struct Piece {
     length: f32,
     height: f32,
-    /// How far a column lies along the piece and across it, and one over each.
+    /// How far a column lies along the piece and across it, and the reciprocals.
     step: (f32, f32),
     per_step: (f32, f32),
-    /// Columns in half a bead width.
+    /// Columns per half bead width.
     columns: f32,
 }
 
@@ -85,8 +86,8 @@ impl Piece {
         }
     }
 
-    /// The columns of a row that the piece may reach, a few more so that they are computed side by side: beyond its end
-    /// the piece adds nothing. The first of `width` columns lies at `start` along and across.
+    /// The columns of a row that the piece may reach, and a few more so that they can be computed side by side: beyond
+    /// its end the piece adds nothing. The first of `width` columns lies at `start` along and across.
     fn reaches(&self, start: (f32, f32), width: usize) -> Range<usize> {
         let (low, high) = if self.length < SHORT { self.round(start) } else { self.boxed(start, 1.0) };
         if low <= high && low < width as f32 && high >= 0.0 {
@@ -97,7 +98,7 @@ impl Piece {
         }
     }
 
-    /// The columns from which and up to which the row lies within the piece, made longer by `more` at both ends.
+    /// The interval of columns in which the row lies within the piece, lengthened by `more` at both ends.
     fn boxed(&self, start: (f32, f32), more: f32) -> (f32, f32) {
         let between = |low: f32, high: f32, start: f32, per_step: f32| {
             let (a, b) = ((low - start) * per_step, (high - start) * per_step);
@@ -108,9 +109,9 @@ impl Piece {
         (across.0.max(along.0), across.1.min(along.1))
     }
 
-    /// The same with round ends.
+    /// The same, with round ends.
     fn round(&self, start: (f32, f32)) -> (f32, f32) {
-        // The pool at an end, where the row meets it; not a number, which is passed over, where it does not.
+        // Where the row meets the pool at an end; NaN, which is skipped, where it does not.
         let pool = |t: f32| {
             let aside = (t * self.step.1 - start.1 * self.step.0) * self.columns;
             let middle = -(t * self.step.0 + start.1 * self.step.1) * self.columns;
@@ -123,13 +124,14 @@ impl Piece {
         (low.min(begin.0).min(end.0), high.max(begin.1).max(end.1))
     }
 
-    /// Adds the piece to some columns of a row; `ramp` says how far each lies from that at `start` along and across.
+    /// Adds the piece to some columns of a row; `ramp` gives the offset of each from the one at `start` along and
+    /// across.
     #[inline(always)]
     fn lay<F: Pool>(&self, heights: &mut [f32], ramp: &[f32], start: (f32, f32)) {
         let (Some(first), Some(last)) = (ramp.first(), ramp.last()) else { return };
         let (length, height) = (self.length, self.height);
         let ends = (start.0 + first * self.step.0, start.0 + last * self.step.0);
-        // Where the pool has arrived completely, or has not yet begun to leave, that end is left out.
+        // Where the pool has arrived completely, or has not begun to leave, that end is skipped.
         let (low, high) = (ends.0.min(ends.1), ends.0.max(ends.1));
         let places = heights.iter_mut().zip(ramp);
         let places = places.map(|(value, k)| (value, start.0 + k * self.step.0, start.1 + k * self.step.1));
@@ -141,7 +143,7 @@ impl Piece {
                 let inside = (1.0 - y * y).max(0.0);
                 let chord = 1.0 / inside.max(f32::MIN_POSITIVE).sqrt();
                 let swept = F::swept(inside, (length - t) * chord) - F::swept(inside, -t * chord);
-                // Rounding must not take metal away.
+                // Rounding must not remove metal.
                 *value += height * swept.max(0.0);
             }),
         }
@@ -154,7 +156,7 @@ trait Pool {
 
     fn whole(inside: f32) -> f32;
 
-    /// What a long piece adds `t` half bead widths from one of its ends, where `inside` = 1 − y².
+    /// What a long piece adds at `t` half bead widths from one of its ends, where `inside` = 1 − y².
     #[inline(always)]
     fn one_end(inside: f32, t: f32) -> f32 {
         let inside = inside.max(0.0);
@@ -190,7 +192,7 @@ impl Pool for Even {
 impl Pool for Rimmed {
     #[inline(always)]
     fn swept(inside: f32, u: f32) -> f32 {
-        // Off the bead there is nothing to sweep.
+        // Outside the bead there is nothing to sweep.
         if inside > 0.0 { FRAC_1_PI * asin(u.clamp(-1.0, 1.0)) } else { 0.0 }
     }
 

@@ -1,13 +1,13 @@
 //! The deposit model: what a layer's passes would build, as a height field, and what is wrong with it.
 //!
-//! Our plans and other programs are judged alike: both become [`Stroke`]s, straight pieces of bead, and their heights
-//! ([`stroke`]: the closed form) add up on a [grid](field::Grid). [`field`] does so at every point in double precision; a
-//! [`Judge`] takes the same points in single precision, but skips those whose verdict is known beforehand (`tiles`),
+//! Our plans and other programs are judged alike: both become [`Stroke`]s, straight pieces of bead, whose heights
+//! ([`stroke`]: the closed form) add up on a [grid](field::Grid). [`field`] does so at every point in double precision;
+//! a [`Judge`] takes the same points in single precision, but skips those whose verdict is known in advance (`tiles`),
 //! and layers that repeat an earlier one. Only a few layers are held in memory.
 //!
 //! Inside the outline, less a rim of a quarter of a bead width, a point is a *void* below [`VOID`] times the nominal
 //! bead height, *low* from there to [`LOW`], and *overfilled* above [`OVERFILL`]. *Outside* is metal higher than
-//! [`OUTSIDE`] times the bead height beyond the outline and the machining allowance.
+//! [`OUTSIDE`] times the nominal bead height beyond the outline and the machining allowance.
 
 pub mod corner;
 pub mod field;
@@ -45,25 +45,25 @@ pub const LOW: f64 = 0.7;
 pub const OVERFILL: f64 = 1.3;
 /// Metal outside counts above this fraction of the nominal bead height.
 pub const OUTSIDE: f64 = 0.05;
-/// The edge of a layer is rounded over this fraction of a bead width: no voids are searched for there.
+/// The edge of a layer is rounded over this fraction of a bead width, so no voids are searched for there.
 pub const RIM: f64 = 0.25;
-/// Grid points across a bead, unless another grid is asked for.
+/// Grid points across a bead by default.
 pub const POINTS_ACROSS: f64 = 20.0;
 /// A part whose layers have more points in total than this gets a coarser grid.
 pub const MANY_POINTS: f64 = 5e8;
-/// No layer has more points than this.
+/// Most grid points of a layer.
 pub const MOST_POINTS: f64 = 6.4e7;
 
 /// How layers are judged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepositSettings {
-    /// The bead that is promised.
+    /// The nominal bead of the profile.
     pub nominal: Nominal,
     /// How far metal may lie outside the outline, mm.
     pub machining_allowance: f64,
     /// Distance between grid points, mm.
     pub step: f64,
-    /// Whether layers lie over one another as they are given; around an axis each is unrolled by itself.
+    /// Whether layers can be stacked as given; around an axis each one is unrolled separately.
     pub over_one_another: bool,
 }
 
@@ -73,8 +73,8 @@ impl DepositSettings {
         Self { nominal, machining_allowance, step: nominal.bead.width / POINTS_ACROSS, over_one_another: true }
     }
 
-    /// With a grid for a part of `layers` layers: up to twice as coarse where all layers together would have more than
-    /// [`MANY_POINTS`], and as coarse as needed where one would have more than [`MOST_POINTS`].
+    /// Coarsens the grid for a part of `layers` layers: up to twofold if all layers together would have more than
+    /// [`MANY_POINTS`], and as far as needed if one would have more than [`MOST_POINTS`].
     pub fn fitted_to(mut self, bounds: &Bounds, layers: usize) -> Self {
         let area = bounds.size().x * bounds.size().y;
         let many = (area * layers as f64 / MANY_POINTS).sqrt();
@@ -89,13 +89,13 @@ pub struct Judgement {
     /// Areas and heights.
     #[serde(with = "figures::whole")]
     pub figures: Figures,
-    /// Connected voids, the largest first; none for a judge without patches.
+    /// Connected voids, the largest first; empty for a judge without patches.
     pub voids: Vec<Patch>,
-    /// Connected overfilled patches, the highest first; none for a judge without patches.
+    /// Connected overfilled patches, the highest first; empty for a judge without patches.
     pub peaks: Vec<Patch>,
     /// The height field as a coarse picture.
     pub picture: Option<Picture>,
-    /// Number of points computed, summed over the strokes.
+    /// Number of point evaluations, summed over the strokes.
     pub work: usize,
 }
 
@@ -112,7 +112,7 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// A judge that forgets each layer.
+    /// A judge that keeps no stack, and no picture.
     pub fn new(settings: DepositSettings) -> Self {
         Self {
             settings,
@@ -125,14 +125,14 @@ impl Judge {
         }
     }
 
-    /// Computes every point of every layer in double precision, which takes many times as long: the reference for all
-    /// that is quicker.
+    /// Computes every point of every layer in double precision, which takes many times as long: the reference for the
+    /// faster methods.
     pub fn with_every_point(mut self) -> Self {
         self.every_point = true;
         self
     }
 
-    /// Also lays the layers on top of each other, if they lie so, to see how the part grows; `bounds` holds all layers.
+    /// Also stacks the layers, if they can be stacked, to see how the part grows; `bounds` contains all layers.
     pub fn with_stack(mut self, bounds: &Bounds) -> Self {
         self.stack = self.settings.over_one_another.then(|| Stack::new(bounds, self.settings));
         self
@@ -144,7 +144,7 @@ impl Judge {
         self
     }
 
-    /// Does not join voids and overfilled places into patches; their areas are in the figures.
+    /// Does not join voids and overfilled points into patches; their areas are still in the figures.
     pub fn without_patches(mut self) -> Self {
         self.patches = false;
         self
@@ -155,12 +155,12 @@ impl Judge {
         &self.total
     }
 
-    /// The layers on top of each other.
+    /// The stacked layers, if asked for.
     pub fn stack(&self) -> Option<&Stack> {
         self.stack.as_ref()
     }
 
-    /// How it judges.
+    /// Its settings.
     pub fn settings(&self) -> &DepositSettings {
         &self.settings
     }
@@ -222,17 +222,17 @@ impl Judge {
     }
 }
 
-/// What is searched for in a layer.
+/// What is looked at in a layer, and how.
 struct Eye<'a> {
     grid: &'a Grid,
     mask: &'a Mask,
     nominal: &'a Nominal,
     canvas: Option<Canvas>,
-    /// Whether its runs are joined into patches.
+    /// Whether runs are joined into patches.
     patches: bool,
 }
 
-/// What is taken from a part of a layer before it is forgotten.
+/// What is kept of a section of a layer.
 #[derive(Default)]
 struct Seen {
     figures: Figures,
@@ -241,7 +241,7 @@ struct Seen {
     work: usize,
 }
 
-/// Below this many grid points along a pixel a picture shows single beads, and needs their points.
+/// With fewer grid points than this along a pixel, a picture shows single beads and needs every point.
 const BEADS_SHOWN: usize = 4;
 
 impl Eye<'_> {
@@ -278,7 +278,7 @@ impl Eye<'_> {
         Seen { picture: self.canvas.as_ref().map(|canvas| canvas.strip(rows)), ..Seen::default() }
     }
 
-    /// Where the runs of the next part begin.
+    /// Index of the first run of the next section.
     fn next_runs(&self, seen: &mut Seen) -> usize {
         if !self.patches {
             seen.runs.clear();
@@ -310,14 +310,14 @@ fn grid_of(layer: &Layer, strokes: &[Stroke], step: f64) -> Option<Grid> {
     Some(Grid::covering(&bounds, widest / 2.0 + step, step))
 }
 
-/// The outline less its rim, and the area where metal is allowed, as the columns that lie in them, row after row.
+/// The outline less its rim, and the area where metal is allowed, as column ranges row by row.
 pub struct Mask {
     core: PerRow<Range<usize>>,
     allowed: PerRow<Range<usize>>,
 }
 
 impl Mask {
-    /// The rows of a grid over the islands of a layer, and over what lies beyond them without being outside.
+    /// The mask of a layer on a grid: its islands, and the areas beyond them that do not count as outside.
     pub fn new(layer: &Layer, settings: &DepositSettings, grid: &Grid) -> Self {
         let whole = Region::from_normalised(layer.islands.clone());
         let rows = |region: &Region| {
@@ -349,7 +349,7 @@ fn columns<'a>(crossings: &'a [f64], grid: &'a Grid) -> impl Iterator<Item = Ran
     let mut end = 0;
     let columns = crossings.chunks_exact(2).map(move |pair| {
         let columns = grid.columns_between(pair[0], pair[1]);
-        // Where two outlines touch at a grid point, it counts once.
+        // Where two outlines touch at a grid point, the point counts once.
         let start = columns.start.max(end);
         end = columns.end.max(end);
         start..columns.end

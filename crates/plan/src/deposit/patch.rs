@@ -1,4 +1,4 @@
-//! Connected voids and overfilled patches with their places, and the causes of the peaks.
+//! Connected voids and overfilled patches with their positions, and the causes of the peaks.
 
 use super::field::{Band, Grid, Height};
 use super::ridges::Ridges;
@@ -32,7 +32,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// The word in tables.
+    /// The name used in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Start => "start",
@@ -60,21 +60,21 @@ pub struct Patch {
     pub cause: Option<Cause>,
 }
 
-/// Neighbouring points of a row that are all void, or all overfilled.
+/// Consecutive points of a row that are all void, or all overfilled.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Run {
     pub(super) overfilled: bool,
     pub(super) row: u32,
     pub(super) columns: Range<u32>,
-    /// The least or greatest height, mm, and the column where it is found.
+    /// The least or greatest height, mm, and the column where it occurs.
     pub(super) extreme: f64,
     pub(super) at: u32,
 }
 
-/// Points checked together for whether any of them is void or overfilled.
+/// Points tested together for any void or overfill.
 const LOOK: usize = 16;
 
-/// Adds the runs of a band, row after row.
+/// Adds the runs of a band, row by row.
 pub(super) fn find<H: Height>(band: &Band<'_, H>, mask: &Mask, nominal: &Nominal, runs: &mut Vec<Run>) {
     let (void, overfill) = (H::of(VOID * nominal.bead.height), H::of(OVERFILL * nominal.bead.height));
     let stands_out = |height: &H| (*height < void) | (*height > overfill);
@@ -83,7 +83,7 @@ pub(super) fn find<H: Height>(band: &Band<'_, H>, mask: &Mask, nominal: &Nominal
         for columns in band.parts(mask.core(row)) {
             let begun = runs.len();
             for (k, heights) in heights[columns.clone()].chunks(LOOK).enumerate() {
-                // With a known length they are checked side by side.
+                // With a fixed length they are tested in parallel.
                 if !heights.first_chunk::<LOOK>().map_or_else(|| any(heights), |all| any(all)) {
                     continue;
                 }
@@ -114,7 +114,7 @@ pub(super) fn find_between(ridges: &Ridges, square: &Square, grid: &Grid, runs: 
     });
 }
 
-/// Adds a point to the last run if that one began at `begun` or later and reaches it, or begins another.
+/// Adds a point to the last run if that began at index `begun` or later and is adjacent, or begins a new one.
 fn extend(runs: &mut Vec<Run>, begun: usize, (row, at): (usize, usize), height: f64, overfilled: bool) {
     let (row, at) = (row as u32, at as u32);
     match runs[begun..].last_mut() {
@@ -128,16 +128,17 @@ fn extend(runs: &mut Vec<Run>, begun: usize, (row, at): (usize, usize), height: 
     }
 }
 
-/// The runs of all parts of a layer in the order of its rows. The parts come row of squares by row of squares from left
-/// to right, and the runs of a row in each part from left to right.
+/// The runs of all sections of a layer, in the order of its rows. The sections come by rows of squares, each from left
+/// to right, and the runs of a row in each section from left to right.
 pub(super) fn in_order<'r>(parts: impl Iterator<Item = &'r Run> + Clone, rows: usize) -> Vec<Run> {
     PerRow::grouped(rows, parts.map(|run| (run.row as usize, run.clone()))).into_items()
 }
 
-/// Runs in the order of the rows joined where they touch: voids, the largest first, and peaks, the highest first.
+/// Runs, given in the order of the rows, joined where they touch: voids, the largest first, and peaks, the highest
+/// first.
 pub(super) fn patches(runs: &[Run], grid: &Grid, layer: &Layer, nominal: &Nominal) -> (Vec<Patch>, Vec<Patch>) {
     let mut parents: Vec<u32> = (0..runs.len() as u32).collect();
-    // Both rows are walked once: each run is compared with the runs of the row before that end after it begins.
+    // Both rows are traversed once: each run is compared with those of the row before, up to the last that overlaps it.
     let (mut row_start, mut last_row) = (0, 0..0);
     for i in 0..runs.len() {
         if runs[i].row != runs[row_start].row {
@@ -148,7 +149,7 @@ pub(super) fn patches(runs: &[Run], grid: &Grid, layer: &Layer, nominal: &Nomina
         while last_row.start < last_row.end && runs[last_row.start].columns.end < runs[i].columns.start {
             last_row.start += 1;
         }
-        // The previous run continues in this one where a part of the layer ends between them.
+        // The previous run continues in this one if a section of the layer ends between them.
         let before = (row_start < i && runs[i - 1].columns.end == runs[i].columns.start).then(|| i - 1);
         let above = last_row.clone().take_while(|&j| runs[j].columns.start <= runs[i].columns.end);
         for j in before.into_iter().chain(above) {
@@ -201,7 +202,7 @@ fn root(parents: &mut [u32], i: usize) -> usize {
     i as usize
 }
 
-/// A turn sharper than this piles metal up on its inner side: cos 30°.
+/// A turn sharper than this piles up metal on its inner side: cos 30°.
 const SHARP: f64 = 0.866;
 
 /// The nearest start, end or sharp turn within half a bead; otherwise, whether one or several passes come that near.
@@ -218,7 +219,7 @@ fn cause(place: DVec2, passes: &[Pass], nominal: &Nominal) -> Option<Cause> {
     for pass in passes {
         let beside = pass.segments().any(|s| {
             let (a, b) = (s.from.truncate(), s.to.truncate());
-            // Nearly all lie farther off than that in y alone.
+            // Nearly all pieces are farther away than that in y alone.
             (a.y.min(b.y) - reach..a.y.max(b.y) + reach).contains(&place.y)
                 && planar::polyline::distance_squared_to_segment(place, a, b) < reach * reach
         });

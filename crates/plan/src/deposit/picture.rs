@@ -1,4 +1,4 @@
-//! The height field as a small picture, for pages and for the studio.
+//! The height field as a small picture, for reports and the studio.
 
 use super::field::{Band, Grid, Height};
 use super::patch::Run;
@@ -33,24 +33,24 @@ pub struct Picture {
     pub values: Vec<u8>,
 }
 
-/// Puts a layer into a picture: each pixel is the mean of the grid points with metal in it, void if one of them is.
+/// Renders a layer into a picture: each pixel is the mean of its grid points with metal, or void if any of them is.
 pub(super) struct Canvas {
     grid: Grid,
     /// Grid points along a side of a pixel.
     side: usize,
-    /// The height that adds one to a pixel's value, mm.
+    /// Height per unit of a pixel's value, mm.
     unit: f64,
 }
 
-/// Up to this height, mm, a grid point counts as without metal.
+/// Up to this height, mm, a grid point counts as empty.
 const NO_METAL: f64 = 1e-6;
-/// The highest value of a pixel above [`FIRST_HEIGHT`].
+/// Number of height values of a pixel, above [`FIRST_HEIGHT`].
 const STEPS: f32 = (u8::MAX - FIRST_HEIGHT) as f32;
 
-/// A pixel while points are added.
+/// A pixel being accumulated.
 #[derive(Debug, Clone, Copy, Default)]
 struct Pixel {
-    /// Heights in units of the canvas.
+    /// Sum of the heights, in units of the canvas.
     sum: f32,
     points: u32,
     void: bool,
@@ -71,19 +71,19 @@ impl Canvas {
         self.grid.columns.div_ceil(self.side)
     }
 
-    /// The pixels of some rows, still empty.
+    /// The pixels covering some rows, still empty.
     pub(super) fn strip(&self, rows: Range<usize>) -> Strip {
         let lines = rows.start / self.side..rows.end.div_ceil(self.side);
         Strip { pixels: vec![Pixel::default(); lines.len() * self.width()], first: lines.start }
     }
 
-    /// Adds the points of a band, and of the voids in it.
+    /// Adds the points of a band, and the voids in it.
     pub(super) fn paint<H: Height>(&self, strip: &mut Strip, band: &Band<'_, H>, runs: &[Run]) {
         let (metal, scale, width) = (H::of(NO_METAL), (1.0 / self.unit) as f32, band.columns.len());
         let rows = band.first..band.first + band.heights.len() / width.max(1);
         let (mut sums, mut points) = (vec![0.0_f32; width], vec![0_u32; width]);
         for (_, lines) in self.pixels(&rows) {
-            // Down the columns first: these sums run side by side.
+            // Down the columns first: these sums run in parallel.
             sums.fill(0.0);
             points.fill(0);
             for heights in lines.clone().map(|row| &band.heights[(row - band.first) * width..][..width]) {
@@ -110,7 +110,7 @@ impl Canvas {
         }
     }
 
-    /// Adds a square of ridges, and of the voids in it.
+    /// Adds a square of ridges, and the voids in it.
     pub(super) fn paint_ridges(&self, strip: &mut Strip, square: &Square, ridges: &Ridges, runs: &[Run]) {
         self.paint_voids(strip, runs);
         let middle = |range: &Range<usize>| 0.5 * (range.start + range.end - 1) as f64;
@@ -133,7 +133,7 @@ impl Canvas {
         &mut strip.pixels[at..at + self.width()]
     }
 
-    /// The pixels that some rows or columns of the grid lie in, each with those in it.
+    /// The pixels that cover some rows or columns of the grid, each with the range that it covers.
     fn pixels(&self, points: &Range<usize>) -> impl Iterator<Item = (usize, Range<usize>)> + use<> {
         let (side, points) = (self.side, points.clone());
         let within = move |pixel: usize| (pixel * side).max(points.start)..(pixel * side + side).min(points.end);
@@ -163,9 +163,9 @@ impl Canvas {
     }
 }
 
-/// Some lines of a picture while points are added.
+/// Some rows of a picture being accumulated.
 pub(super) struct Strip {
     pixels: Vec<Pixel>,
-    /// The line of the first pixel.
+    /// The picture row of the first pixel.
     first: usize,
 }

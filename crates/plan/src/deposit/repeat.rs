@@ -1,4 +1,4 @@
-//! Layers that repeat an earlier one, as those of upright parts do: their verdict is known.
+//! Layers that repeat an earlier one, as in upright parts: their verdict is known.
 
 use super::Judgement;
 use crate::layer::Layer;
@@ -7,19 +7,19 @@ use glam::DVec2;
 use planar::{Polygon, Ring};
 use std::collections::VecDeque;
 
-/// Points nearer than this many grid steps are the same: a void's edge moves by no more.
+/// Points nearer than this many grid steps count as the same: the edge of a void moves by no more.
 pub(super) const NEAR: f64 = 1e-3;
-/// Layers are compared with this many before them: scan lines that turn come back after a few.
+/// Layers are compared with this many before them: scan lines that turn from layer to layer recur after a few.
 const KEPT: usize = 4;
 
-/// The last different layers and what was found in them.
+/// The last distinct layers and their verdicts.
 #[derive(Debug, Default)]
 pub(super) struct Known {
     layers: VecDeque<(Layer, Judgement)>,
 }
 
 impl Known {
-    /// What was found in a layer whose passes and outlines lie within `near` (mm) of those of this one.
+    /// The verdict on a layer whose passes and outlines lie within `near` (mm) of those of this one.
     pub(super) fn find(&self, layer: &Layer, near: f64) -> Option<Judgement> {
         let alike = |known: &&(Layer, Judgement)| same_layer(&known.0, layer, near);
         let mut judgement = self.layers.iter().find(alike)?.1.clone();
@@ -29,7 +29,7 @@ impl Known {
         Some(judgement)
     }
 
-    /// Keeps a layer that was computed, and forgets the oldest.
+    /// Keeps a computed layer, and forgets the oldest.
     pub(super) fn keep(&mut self, layer: &Layer, judgement: &Judgement) {
         if judgement.work > 0 {
             self.layers.truncate(KEPT - 1);
@@ -63,7 +63,7 @@ fn same_values(a: &Along, b: &Along) -> bool {
     }
 }
 
-/// Widths and paces to a millionth: a height follows them in the same measure.
+/// Whether widths or paces agree to a millionth: heights vary in proportion.
 fn near_value(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-6 * a.abs()
 }

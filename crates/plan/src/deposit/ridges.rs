@@ -1,8 +1,8 @@
-//! Parallel beads of one size side by side: most of a raster. One line across them says everything.
+//! Parallel beads of one size side by side: most of a raster. One line across them tells everything.
 //!
-//! With lengths in half bead widths a, heights in bead heights, and δ from crest to crest, 1 ≤ δ < 2, only neighbours
-//! meet. Between two crests a bead is alone up to δ − 1, as high as 1 − s²; from there both add up to
-//! 2 − s² − (δ − s)², which is least at its ends, 1 − (δ − 1)², and greatest in the middle, 2 − δ²/2.
+//! With lengths in half bead widths, heights in bead heights, and crests δ apart, 1 ≤ δ < 2, only neighbours overlap.
+//! Between two crests a bead is alone up to s = δ − 1 from its crest, with height 1 − s²; from there both add up to 2 −
+//! s² − (δ − s)², which is least at the ends of that interval, 1 − (δ − 1)², and greatest in the middle, 2 − δ²/2.
 
 use super::stroke::Frame;
 use super::tiles::SIDE;
@@ -10,16 +10,16 @@ use super::{LOW, OVERFILL, VOID, field};
 use glam::DVec2;
 use std::ops::Range;
 
-/// More beads than this side by side are not treated together.
+/// Most beads that are treated together.
 pub(super) const MOST: usize = 12;
-/// Places across a square for its means: nearer to each other than its points.
+/// Points across a square for its means: denser than its grid points.
 const SAMPLES: usize = 96;
 const LANES: usize = 8;
 
 /// A square crossed by parallel beads. Their voids and humps are stripes along them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ridges {
-    /// Where the crests lie across the beads, in half bead widths from the middle of the square, rising.
+    /// Positions of the crests across the beads, in half bead widths from the middle of the square, ascending.
     crests: [f64; MOST],
     count: usize,
     half_width: f64,
@@ -33,18 +33,18 @@ pub(super) struct Ridges {
     /// Least and greatest height, mm.
     pub(super) least: f64,
     pub(super) greatest: f64,
-    /// Whether voids or humps are left between the beads.
+    /// Whether voids or humps occur between the beads.
     striped: bool,
-    /// The nominal bead height in heights of these beads.
+    /// The nominal bead height over the height of these beads.
     scale: f64,
 }
 
-/// A row whose points differ by less than this across, in half bead widths, runs along the beads.
+/// A row whose points differ by less than this across the beads, in half bead widths, runs along them.
 const ALONG: f64 = 1e-9;
 /// Added and subtracted again, this rounds to a whole number: 1.5 · 2⁵².
 const TO_WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// Where the beads leave a void or a hump between them: places across in half bead widths.
+/// A void or a hump between the beads: an interval across them, in half bead widths.
 #[derive(Debug, Clone, Copy)]
 struct Stripe {
     low: f64,
@@ -54,7 +54,7 @@ struct Stripe {
     overfilled: bool,
 }
 
-/// The points of a square, as far across as in [`Ridges::stripes`], but in half bead widths.
+/// The points of a square, as in [`Ridges::stripes`] but in half bead widths.
 struct Lines {
     start: f64,
     step: f64,
@@ -64,8 +64,8 @@ struct Lines {
 }
 
 impl Lines {
-    /// Calls `found` with each row that has points in a stripe: the row, the points, the one nearest to the extreme and where
-    /// that lies across.
+    /// Calls `found` for each row with points in a stripe: the row, the points, the one nearest to the extreme, and
+    /// that point's position across.
     fn meet(&self, stripe: &Stripe, mut found: impl FnMut(usize, Range<usize>, usize, f64)) {
         let start = |row: usize| self.start + row as f64 * self.row_step;
         if self.step.abs() < ALONG {
@@ -92,9 +92,10 @@ impl Lines {
         }
     }
 
-    /// The rows, one bit each, that a stripe may have a point in. Most stripes are so narrow that most rows have none.
+    /// The rows, one bit each, that may have a point in a stripe. Most stripes are so narrow that most rows have none.
     fn rows_met(&self, stripe: &Stripe) -> u64 {
-        // In points: where the middle of the stripe crosses the first row, how far the next rows move it, half its width.
+        // In grid points: where the middle of the stripe crosses the first row, its shift from row to row, and half its
+        // width.
         let at = (0.5 * (stripe.low + stripe.high) - self.start) / self.step;
         let by = self.row_step / self.step;
         let half = (0.5 * (stripe.high - stripe.low) / self.step).abs() + ALONG;
@@ -109,9 +110,10 @@ impl Lines {
 }
 
 impl Ridges {
-    /// The beads like `frame` whose crests lie at `offsets` (mm across, from the middle of the square, in any order), over
-    /// a square that reaches `half` mm to every side of its middle, half a step of the grid included. `None` where more
-    /// than two beads meet or none does, or where a void lies beyond the last crest, for a nominal bead of this height.
+    /// The beads like `frame` whose crests lie at `offsets` (mm across, from the middle of the square, in any order),
+    /// over a square that extends `half` mm to each side of its middle, half a grid step included. `None` if more than
+    /// two beads overlap anywhere, or none lies somewhere, or a void lies beyond the last crest, for a nominal bead of
+    /// this height.
     pub(super) fn of(frame: &Frame, offsets: &mut [f64], half: f64, nominal_height: f64) -> Option<Self> {
         let (a, scale) = (frame.a, nominal_height / frame.height);
         let reach = half * (frame.along.x.abs() + frame.along.y.abs()) / a;
@@ -145,10 +147,10 @@ impl Ridges {
         })
     }
 
-    /// Finds the points of a square that lie in a void or a hump. Its first point lies `start` mm across from its middle,
-    /// the next in a row `step` mm farther and the next row `row_step`; it has `rows` rows of `points` points. `found` is
-    /// given whether it is a hump, the row, which points of it, the deepest or highest of them and its height in mm; those of
-    /// a row come from its first point to its last.
+    /// Finds the points of a square that lie in a void or a hump. Its first point lies `start` mm across from its
+    /// middle, the next point in the row `step` mm farther and the next row `row_step`; there are `rows` rows of
+    /// `points` points. `found` receives whether it is a hump, the row, the range of points, the deepest or highest of
+    /// them, and its height in mm; calls for one row come in the order of its points.
     pub(super) fn stripes(
         &self,
         (start, step, row_step): (f64, f64, f64),
@@ -164,7 +166,7 @@ impl Ridges {
         let stripes =
             pairs.flat_map(|pair| between(pair[0], pair[1], self.scale).into_iter().flatten().map(move |s| (pair, s)));
         let add = |(pair, stripe): (&[f64], Stripe)| {
-            // No third bead reaches in between.
+            // No third bead reaches the gap.
             let bead = |crest: f64, place: f64| (1.0 - (place - crest).powi(2)).max(0.0);
             let height = |place: f64| (bead(pair[0], place) + bead(pair[1], place)) * self.height;
             lines.meet(&stripe, |row, points, at, place| found(stripe.overfilled, row, points, at, height(place)));
@@ -172,13 +174,13 @@ impl Ridges {
         if step < 0.0 { stripes.rev().for_each(add) } else { stripes.for_each(add) }
     }
 
-    /// Gives the mean height, mm, over a stretch of `length` mm across the beads from where its middle lies.
+    /// A function giving the mean height, mm, over an interval of `length` mm across the beads, by its middle.
     pub(super) fn means(&self, length: f64) -> impl Fn(f64) -> f32 {
         const THIRD: f32 = 1.0 / 3.0;
         let per_mm = 1.0 / self.half_width;
         let half = (0.5 * length * per_mm) as f32;
         let scale = self.height as f32 / (2.0 * half);
-        // Some crests side by side; unused places hold infinity, too far off to count.
+        // Groups of crests side by side; unused entries hold infinity, too far away to count.
         let mut crests = [[f32::INFINITY; 4]; MOST / 4];
         crests
             .as_flattened_mut()
@@ -203,7 +205,7 @@ impl Ridges {
     }
 }
 
-/// The voids and humps between two crests, 1 to 2 half bead widths apart.
+/// The voids and humps between two crests that are 1 to 2 half bead widths apart.
 fn between(a: f64, b: f64, scale: f64) -> [Option<Stripe>; 2] {
     let (half, middle) = ((b - a) / 2.0, (a + b) / 2.0);
     let crown = 2.0 - 2.0 * half * half;
@@ -213,7 +215,7 @@ fn between(a: f64, b: f64, scale: f64) -> [Option<Stripe>; 2] {
         let reach = above(OVERFILL);
         return [Some(Stripe { low: middle - reach, high: middle + reach, extreme: middle, overfilled: true }), None];
     }
-    // A bead alone is too low within `edge` of the middle; the deepest place is where the other begins.
+    // A single bead is too low within `edge` of the middle; the deepest point is where the other bead begins.
     let (edge, deepest) = (half - (1.0 - VOID * scale).max(0.0).sqrt(), 1.0 - half);
     if edge <= deepest {
         return [None, None];
@@ -230,7 +232,8 @@ fn between(a: f64, b: f64, scale: f64) -> [Option<Stripe>; 2] {
     }
 }
 
-/// Bounds of the height over `reach` to both sides of the middle; `None` where more than two beads meet, or none does.
+/// Bounds of the height within `reach` on both sides of the middle; `None` where more than two beads overlap, or none
+/// lies.
 fn extremes(crests: &[f64], reach: f64) -> Option<(f64, f64)> {
     let (first, last) = (crests.first()?, crests.last()?);
     // Beyond the outer crests there is one bead alone.
@@ -257,7 +260,7 @@ struct Means {
 }
 
 impl Means {
-    /// Of beads whose crests lie in the square that `half`, its half diagonal turned into the direction of the beads, spans.
+    /// For beads whose crests lie within the square spanned by `half`, its half diagonal in the frame of the beads.
     fn over(crests: &[f64], half: DVec2, low: f32) -> Self {
         let half = half.abs().as_vec2();
         let (reach, flat) = (half.x + half.y, (half.x - half.y).abs());
@@ -266,7 +269,7 @@ impl Means {
         let mut heights = [0.0_f32; SAMPLES];
         for crest in crests {
             let crest = *crest as f32;
-            // The places that the bead reaches, and a few more: there it adds nothing.
+            // The positions that the bead reaches, and a few more, where it adds nothing.
             let at = |place: f32| ((place + reach) / step).max(0.0) as usize;
             let near = at(crest - 1.0) / LANES..(at(crest + 1.0) / LANES + 1).min(SAMPLES / LANES);
             let lanes = heights.as_chunks_mut::<LANES>().0.iter_mut().zip(places.as_chunks::<LANES>().0);
@@ -277,7 +280,7 @@ impl Means {
                 }
             }
         }
-        // How much of the square lies at a distance across: all its width up to `flat`, then less and less.
+        // Width of the square at a distance across: full up to `flat`, then decreasing.
         let fall = 1.0 / (reach - flat).max(1e-6 * reach);
         let [mut weights, mut lows, mut sums, mut squares] = [[0.0_f32; LANES]; 4];
         for (places, heights) in places.as_chunks::<LANES>().0.iter().zip(heights.as_chunks::<LANES>().0) {
@@ -299,7 +302,7 @@ impl Means {
 mod tests {
     use super::*;
 
-    /// The bounds hold at every place, and are reached where both ends of a gap lie in the square.
+    /// The bounds hold everywhere, and are attained where both ends of a gap lie in the square.
     #[test]
     fn heights_lie_within_their_bounds() {
         for gap in [1.01, 1.18, 1.476, 1.7, 1.809, 1.95] {

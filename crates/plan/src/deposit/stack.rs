@@ -1,11 +1,11 @@
-//! The part as it grows: every bead laid on what lies below it.
+//! The part as it grows: every bead laid on the metal below it.
 //!
-//! A bead keeps the shape of its crown and the metal that it is fed, and sinks or rises until both are true on the
-//! ground it meets: its top is max(ground, a + crown), and a is where the metal between top and ground is the metal fed.
-//! So a bead on a flat plate is the bead of [`stroke`](super::stroke), one between two others fills their valley, and
-//! one on the crest of a wall adds area over width (the equal areas of [`wall`](crate::bead::wall)). Where the ground
-//! falls away, the bead overhangs: its metal does not run down farther below its edge than a bead is high on average. Beyond
-//! that, nothing levels: neither remelting nor the flow along a bead is in the model.
+//! A bead keeps the shape of its crown and its volume, and sinks or rises until both fit the ground it meets: its top
+//! is max(ground, a + crown), with a such that the metal between top and ground is the metal fed. So a bead on a flat
+//! plate is the bead of [`stroke`](super::stroke), one between two others fills their valley, and one on the crest of a
+//! wall rises by area over width (the equal areas of [`wall`](crate::bead::wall)). Where the ground falls away, the
+//! bead overhangs: its metal runs down no farther below its edge than the mean height of a bead. Nothing else levels
+//! out: the model has neither remelting nor flow along a bead.
 
 use super::field::Grid;
 use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke, strokes};
@@ -18,57 +18,57 @@ use planar::Bounds;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// Beads are laid in pieces from a quarter to half of their width long.
+/// Beads are laid in pieces a quarter to half their width long.
 const SHORTEST_PIECE: f64 = 0.25;
 const LONGEST_PIECE: f64 = 0.5;
-/// Pieces are joined where the chord is at least this fraction of the path.
+/// Pieces are joined if the chord is at least this fraction of the path.
 const STRAIGHT: f64 = 0.95;
-/// Grid points of a stack along a point of the layers' grid.
+/// Grid step of a stack over that of the layers.
 const COARSER: f64 = 2.0;
-/// A piece may differ by this fraction from the metal that it is fed.
+/// Tolerance of a piece's metal against the metal fed, as a fraction.
 const BALANCED: f64 = 1e-4;
 
-/// What is built on the plate.
+/// The metal built on the plate.
 #[derive(Debug, Clone)]
 pub struct Stack {
     grid: Grid,
     settings: DepositSettings,
     /// Height of the metal, mm.
     top: Vec<f32>,
-    /// Height that the plan wants inside the rim, mm; not a number elsewhere.
+    /// Height that the plan requires inside the rim, mm; NaN elsewhere.
     wanted: Vec<f32>,
     swept: Vec<Swept>,
     pieces: u32,
-    /// Where the lowest layer begins, mm.
+    /// Underside of the lowest layer, mm.
     plate: Option<f64>,
-    /// That of the last layer, mm.
+    /// Thickness of the last layer, mm.
     layer_height: Option<f64>,
     growth: Vec<Growth>,
 }
 
-/// How far the pool has passed over a grid point.
+/// How much of the pool has passed over a grid point.
 #[derive(Debug, Clone, Copy, Default)]
 struct Swept {
-    /// The fraction of a bead that it got.
+    /// The fraction of a bead that it has received.
     part: f32,
     /// The last piece that reached it.
     piece: u32,
 }
 
-/// How far the metal rises above and falls below the plan, mm, inside the outlines less their rim.
+/// Deviation of the metal from the plan's height, mm, inside the outlines less their rim.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Growth {
-    /// The farthest above the plan.
+    /// The greatest height above the plan, mm.
     pub peak: f64,
     /// Where it is.
     pub peak_place: DVec2,
-    /// The farthest below the plan.
+    /// The greatest depth below the plan, mm.
     pub hollow: f64,
-    /// Where it is.
+    /// Where that is, mm.
     pub hollow_place: DVec2,
-    /// Mean height over the plan; negative below it.
+    /// Mean height above the plan, mm; negative below it.
     pub mean: f64,
-    /// The fraction of the area that is one layer height or less above or below the plan.
+    /// Fraction of the area that is within one layer height of the plan.
     pub within: f64,
 }
 
@@ -81,13 +81,13 @@ impl Stack {
         Self { grid, settings, top, wanted, swept, pieces: 1, plate: None, layer_height: None, growth: Vec::new() }
     }
 
-    /// The state after every layer, the lowest first, where that layer lies.
+    /// The state after each layer, the lowest first, within that layer's outline.
     pub fn growth(&self) -> &[Growth] {
         &self.growth
     }
 
-    /// The state of all that is built, each place by the highest layer there; `None` where no layer is wider than its rim, as where the
-    /// top is one slope.
+    /// The state of the finished build, each point compared with the highest layer there; `None` if no layer is wider
+    /// than its rim, as when the top is a single slope.
     pub fn built(&self) -> Option<Growth> {
         let columns = self.grid.columns.max(1);
         let all = self.wanted.chunks(columns).enumerate().map(|(row, wanted)| (row, 0..wanted.len()));
@@ -122,7 +122,7 @@ impl Stack {
     /// Lays the passes of a layer as they are welded.
     pub fn weld(&mut self, passes: &[Pass]) {
         for pass in passes {
-            // No sweep continues from pass to pass.
+            // A sweep never continues into the next pass.
             self.pieces += 2;
             for piece in pieces(strokes(pass, &self.settings.nominal)) {
                 self.lay(&piece);
@@ -130,7 +130,7 @@ impl Stack {
         }
     }
 
-    /// Lays the passes of a layer and compares what is built with what is wanted there.
+    /// Lays the passes of a layer and compares the metal with the plan there.
     pub fn add(&mut self, layer: &Layer) {
         self.layer_height = Some(layer.height);
         let plate = *self.plate.get_or_insert(layer.z - layer.height);
@@ -149,7 +149,7 @@ impl Stack {
         self.growth.push(growth);
     }
 
-    /// What is built compared with what is wanted, on some stretches of rows.
+    /// Compares the metal with the plan on sections of rows.
     fn compared(&self, stretches: impl Iterator<Item = (usize, Range<usize>)>, layer_height: f64) -> Growth {
         let (mut points, mut near, mut sum) = (0_usize, 0_usize, 0.0);
         let mut growth = Growth::default();
@@ -177,7 +177,7 @@ impl Stack {
     }
 
     fn lay(&mut self, piece: &Stroke) {
-        // Grid points that the edge of the bead crosses belong to it in part.
+        // Grid points crossed by the edge of the bead belong to it partly.
         let wider = Bead { width: piece.bead.width + self.grid.step, ..piece.bead };
         let Some((own, wide)) = piece.frame().zip(Stroke { bead: wider, ..*piece }.frame()) else { return };
         let cells = match own.section {
@@ -193,8 +193,8 @@ impl Stack {
         self.pieces += 1;
     }
 
-    /// The grid points to which a piece brings metal, with how much of their bead is swept by it; `wide` is the piece half a
-    /// step wider on both sides.
+    /// The grid points to which a piece brings metal, with the fraction of their bead that it sweeps; `wide` is the
+    /// piece widened by half a step on both sides.
     fn reached<F: Footprint>(&mut self, own: &Frame, wide: &Frame) -> Vec<Cell> {
         let (a, b) = (own.from.y, own.from.y + own.along.y * own.length);
         let mut cells = Vec::new();
@@ -211,7 +211,7 @@ impl Stack {
                 let swept = &mut self.swept[at];
                 let before = if self.pieces - swept.piece > 1 { 0.0 } else { f64::from(swept.part) };
                 let share = (added / whole).min(1.0);
-                // Of what the bead still has to bring here; a point swept to the end begins again.
+                // As a fraction of what the bead has yet to bring here; a fully swept point starts again.
                 let (part, after) = if before + share < 1.0 {
                     (share / (1.0 - before), before + share)
                 } else {
@@ -226,20 +226,21 @@ impl Stack {
     }
 }
 
-/// A grid point below a piece of bead.
+/// A grid point under a piece of bead.
 struct Cell {
     at: usize,
-    /// What the piece brings of all that the bead still has to bring here.
+    /// The fraction that the piece brings, of what the bead has yet to bring here.
     part: f64,
-    /// The fraction of the bead that was not there yet.
+    /// The fraction of the bead that had not been laid here.
     left: f64,
-    /// Height of the bead over its edge, mm.
+    /// Height of the bead above its edge, mm.
     crown: f64,
-    /// Height of what lies there, mm.
+    /// Height of the metal already here, mm.
     ground: f64,
 }
 
-/// The height of a bead's edge at which the metal between its top and the ground is `metal` (mm over grid points).
+/// The height of a bead's edge at which the metal between its top and the ground is `metal` (mm summed over grid
+/// points).
 fn edge_height(cells: &[Cell], bead: &Bead, metal: f64) -> Option<f64> {
     let highest = cells.iter().map(|cell| cell.ground).fold(f64::NEG_INFINITY, f64::max);
     let lowest = cells.iter().map(|cell| cell.ground).fold(f64::INFINITY, f64::min);
@@ -266,8 +267,8 @@ fn edge_height(cells: &[Cell], bead: &Bead, metal: f64) -> Option<f64> {
     (!cells.is_empty() && edge.is_finite()).then_some(edge)
 }
 
-/// A path in pieces of bead that are not longer than half of its width; pieces shorter than a quarter are joined where the
-/// path hardly turns.
+/// A path as pieces of bead no longer than half its width; pieces shorter than a quarter are joined where the path
+/// hardly turns.
 fn pieces(strokes: impl Iterator<Item = Stroke>) -> Vec<Stroke> {
     let mut joined: Vec<Stroke> = Vec::new();
     for stroke in strokes {
@@ -284,7 +285,7 @@ fn pieces(strokes: impl Iterator<Item = Stroke>) -> Vec<Stroke> {
     joined.into_iter().flat_map(split).collect()
 }
 
-/// Two pieces of a path as one with their metal, if that is short and nearly as long as they are.
+/// Two consecutive pieces as one with their metal, if it is short and nearly as long as the two.
 fn together(first: &Stroke, second: &Stroke) -> Option<Stroke> {
     let [a, b] = [first, second].map(|piece| piece.from.distance(piece.to));
     let length = first.from.distance(second.to);

@@ -25,7 +25,7 @@ pub struct Stroke {
     pub bead: Bead,
 }
 
-/// The bead that a profile promises, and the pace at which it does.
+/// The nominal bead of a profile, and its pace.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nominal {
     /// The single bead.
@@ -37,7 +37,7 @@ pub struct Nominal {
 }
 
 impl Nominal {
-    /// The bead of the given width at the given pace (mm/s): its metal per length is that of the nominal bead times
+    /// The bead of the given width (mm) at the given pace (mm/s): its cross-section is that of the nominal bead times
     /// nominal pace / pace.
     pub fn bead_at(&self, width: f64, pace: f64) -> Bead {
         let section = self.bead.section;
@@ -71,12 +71,12 @@ impl Stroke {
         self.frame().map_or(0.0, |frame| frame.height_at(p))
     }
 
-    /// Volume, mm³.
+    /// Volume of its metal, mm³.
     pub fn volume(&self) -> f64 {
         self.from.distance(self.to) * self.bead.area()
     }
 
-    /// The values that do not change from point to point; `None` for a piece of no length or no bead.
+    /// The values that do not change from point to point; `None` for a piece without length or bead.
     pub(super) fn frame(&self) -> Option<Frame> {
         let Bead { width, height, section } = self.bead;
         let (way, a) = (self.to - self.from, section.footprint(width, height) / 2.0);
@@ -87,7 +87,7 @@ impl Stroke {
     }
 }
 
-/// A stroke ready for many points.
+/// A stroke prepared for evaluation at many points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     pub(super) from: DVec2,
@@ -102,7 +102,7 @@ pub(super) struct Frame {
 
 /// The footprint of a pool: what it adds while it passes.
 pub(super) trait Footprint {
-    /// The fraction of the height that is added while the pool moves from 0 to `u` half-chords, at a place where
+    /// The fraction of the height that is added while the pool moves from 0 to `u` half-chords, at a point with
     /// `inside` = 1 − (y/a)²: half of the whole at u = 1.
     fn swept(inside: f64, u: f64) -> f64;
 
@@ -144,7 +144,7 @@ impl Footprint for Even {
 impl Footprint for Rimmed {
     #[inline]
     fn swept(inside: f64, u: f64) -> f64 {
-        // Off the bead there is nothing to sweep.
+        // Outside the bead there is nothing to sweep.
         if inside > 0.0 { FRAC_1_PI * asin(u.clamp(-1.0, 1.0)) } else { 0.0 }
     }
 
@@ -170,20 +170,20 @@ impl Frame {
         let d = p - self.from;
         let (t, y) = (d.dot(self.along), self.along.perp_dot(d));
         let square = 1.0 - (y / self.a) * (y / self.a);
-        // Off the bead the square is negative and the product zero.
+        // Outside the bead the square is negative and the product zero.
         let inside = square.max(0.0);
         let reach = self.a * inside.max(f64::MIN_POSITIVE).sqrt();
         self.height * (F::swept(inside, (self.length - t) / reach) - F::swept(inside, -t / reach))
     }
 
-    /// Height at a point that the whole footprint passes over, mm.
+    /// Height at a point over which the whole footprint passes, mm.
     #[inline]
     pub(super) fn passed_over<F: Footprint>(&self, p: DVec2) -> f64 {
         let y = self.along.perp_dot(p - self.from) / self.a;
         self.height * F::whole(1.0 - y * y)
     }
 
-    /// The stretch of row `y` that gets metal, and the stretch in it that the whole footprint passes over; x in mm.
+    /// The interval of row `y` that gets metal, and the interval in it over which the whole footprint passes; x in mm.
     #[inline]
     pub(super) fn row(&self, y: f64) -> Option<(f64, f64, f64, f64)> {
         let (u, a, dy) = (self.along, self.a, y - self.from.y);
@@ -203,10 +203,10 @@ impl Frame {
     }
 }
 
-/// The stretch without a place.
+/// The empty interval.
 const NOWHERE: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
 
-/// Where x / `per` + `start` lies between `low` and `high`.
+/// The interval in which x / `per` + `start` is between `low` and `high`.
 #[inline]
 fn between(per: f64, start: f64, low: f64, high: f64) -> (f64, f64) {
     if low > high {

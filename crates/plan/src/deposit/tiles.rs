@@ -1,11 +1,11 @@
-//! The quick way over a layer: squares of the grid, row after row of them, each judged as cheaply as it allows.
+//! The fast evaluation of a layer: grid squares, row by row, each judged as cheaply as it allows.
 //!
-//! A square without metal outside the outline is skipped. One inside it that parallel beads cross from side to side
-//! is known from a line across it ([`Ridges`]). All others, at edges, ends and turns, are computed point by point
-//! ([`lay`]). So voids, overfill and metal outside are counted on the same points as by the reference
-//! ([`field`](super::field)), and differ only where single precision puts a height on the other side of a limit; only the
-//! mean, deviation and low area of ridges are computed along a line across them, and their least and
-//! greatest heights are the true ones, wherever the points lie.
+//! A square without metal outside the outline is skipped. One inside that parallel beads cross from side to side is
+//! known from a line across it ([`Ridges`]). All others, at edges, ends and turns, are computed point by point
+//! ([`lay`]). So voids, overfill and metal outside are counted on the same points as in the reference
+//! ([`field`](super::field)), and differ only where single precision puts a height on the other side of a limit. Only
+//! the mean, deviation and low area of ridges are computed along a line across them, and their least and greatest
+//! heights are exact, independent of the grid points.
 
 use super::field::{self, Band, Grid};
 use super::lay;
@@ -18,10 +18,11 @@ use std::ops::Range;
 
 /// Grid points along a side of a square.
 pub(super) const SIDE: usize = 64;
-/// Beads whose directions differ by less than this sine are parallel: over a square, a thousandth of a thousandth of its side.
+/// Beads whose directions differ by less than this sine are parallel: over a square they diverge by a millionth of its
+/// side.
 const PARALLEL: f64 = 1e-6;
 
-/// What is judged.
+/// The layer to be judged.
 pub(super) struct Field<'a> {
     pub(super) grid: &'a Grid,
     pub(super) mask: &'a Mask,
@@ -30,7 +31,7 @@ pub(super) struct Field<'a> {
     pub(super) ridges: bool,
 }
 
-/// A part of a layer that has been examined.
+/// A section of a layer that has been evaluated.
 pub(super) enum Part<'a> {
     /// Computed point by point.
     Band(&'a Band<'a, f32>),
@@ -48,8 +49,8 @@ pub(super) struct Square {
 }
 
 impl Field<'_> {
-    /// Examines a whole layer. Each row of squares has its own `R`, which takes in its parts from left to right; they come
-    /// back from the lowest to the highest, whatever the number of threads.
+    /// Evaluates a whole layer. Each row of squares has its own `R`, which takes in its sections from left to right;
+    /// they are returned from the lowest to the highest, whatever the number of threads.
     pub(super) fn look<R: Send>(
         &self,
         strokes: &[Stroke],
@@ -111,7 +112,7 @@ impl Field<'_> {
         columns.start / SIDE..columns.end.div_ceil(SIDE)
     }
 
-    /// The squares of a row as the outline determines them.
+    /// The squares of a row, classified by the outline.
     fn cells<'f>(&self, rows: &Range<usize>) -> Vec<Cell<'f>> {
         let mut cells = vec![Cell::default(); self.grid.columns.div_ceil(SIDE)];
         // How many more rows are wholly inside from each square on.
@@ -135,9 +136,9 @@ impl Field<'_> {
         cells
     }
 
-    /// Notes what a piece does to a square.
+    /// Records the effect of a piece on a square.
     fn note<'f>(&self, cell: &mut Cell<'f>, frame: &'f Frame, at: usize, rows: &Range<usize>) {
-        // The square is treated as whole even at the end of the grid.
+        // The square is treated as complete even at the edge of the grid.
         let middle = self.grid.place(at * SIDE, rows.start) + self.half() - self.grid.step / 2.0;
         let reach = self.half() * (frame.along.x.abs() + frame.along.y.abs());
         let d = middle - frame.from;
@@ -158,7 +159,7 @@ impl Field<'_> {
         cell.count += 1;
     }
 
-    /// From the middle of a square to its sides, half a step beyond its outer points, mm.
+    /// Distance from the middle of a square to its sides, half a step beyond its outer points, mm.
     fn half(&self) -> f64 {
         0.5 * SIDE as f64 * self.grid.step
     }
@@ -169,7 +170,7 @@ impl Field<'_> {
     }
 }
 
-/// What is known about a square before its points.
+/// What is known about a square before its points are computed.
 #[derive(Debug, Clone, Copy, Default)]
 struct Cell<'f> {
     /// The first piece that reaches it.
@@ -183,7 +184,7 @@ struct Cell<'f> {
 }
 
 impl Cell<'_> {
-    /// Neither metal nor a place where it would be missed.
+    /// Whether it has neither metal nor an area where metal is required.
     fn is_empty(&self) -> bool {
         self.first.is_none() && !self.edge && !self.inside
     }

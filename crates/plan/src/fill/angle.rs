@@ -1,4 +1,4 @@
-//! Raster angles with few turns (Han et al. 2018, 3.1), and what else depends on the angle.
+//! Raster angles with few turns (Han et al. 2018, 3.1), and what depends on the angle.
 
 use super::{FillSettings, Strategy};
 use glam::DVec2;
@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// An edge direction may have up to this fraction more turns than the best angle.
 const EDGE_SLACK: f64 = 0.01;
 
-/// Edge directions that are worth a trial.
+/// Number of edge directions tried.
 const EDGES_TRIED: usize = 4;
 
 /// Angles closer than this count as one, radians.
@@ -28,9 +28,9 @@ pub fn fewest_turns(layers: &[Vec<Region>], settings: &FillSettings) -> Option<f
     few_turns(layers, settings).first().copied()
 }
 
-/// Angles that may take the least time on such layers, radians, the likeliest first: those with few turns, and the
-/// fixed angle of the settings. Turns are not everything: short lines cost less, and every path costs a start. An angle comes
-/// within 0..90° first and turned by 90° after it: where both layers are alike, their lines are the same.
+/// Angles likely to take the least time on such layers, radians, the most likely first: those with few turns, and the
+/// fixed angle of the settings. Turns are not everything: short lines cost less, and every path costs a start. Each
+/// angle is listed within 0..90° and then turned by 90°: if both layers are alike, the lines are the same.
 pub fn candidates(layers: &[Vec<Region>], settings: &FillSettings) -> Vec<f64> {
     let few = few_turns(layers, settings);
     let fixed = (!few.is_empty()).then_some(settings.raster_angle);
@@ -47,9 +47,9 @@ pub fn candidates(layers: &[Vec<Region>], settings: &FillSettings) -> Vec<f64> {
 
 /// The angle with the fewest turns, then edge directions with few.
 ///
-/// The number of turns is known exactly for angles between the directions of edges. Exactly along an edge it may be
-/// lower still, so the directions of the longest edges are tried too. One with hardly more turns wins over an angle
-/// close to it, such as 89.9°.
+/// The number of turns is known exactly for angles between edge directions. Exactly along an edge it may be lower
+/// still, so the directions of the longest edges are tried too. An edge direction with hardly more turns is preferred
+/// to a nearby angle such as 89.9°.
 fn few_turns(layers: &[Vec<Region>], settings: &FillSettings) -> Vec<f64> {
     let turned = |layer: usize| if layer % 2 == 1 { FRAC_PI_2 } else { 0.0 };
     let layers = layers.iter().enumerate();
@@ -81,7 +81,7 @@ pub struct Curves {
     pub corner_area: Vec<DVec2>,
 }
 
-/// With more edges the number of turns is sampled: its jumps grow with the edges, and so does the work for each.
+/// Above this many edges the number of turns is sampled: both its jumps and the cost of each grow with the edges.
 const MOST_EDGES: usize = 1000;
 
 /// The curves for the islands of a layer; lengths and areas for every degree.
@@ -107,9 +107,9 @@ pub fn curves(strategy: &dyn Strategy, islands: &[Polygon], settings: &FillSetti
     }
 }
 
-/// Area laid twice at all turns, mm²: `S = r² (cot(θ/2) + θ/2 − π/2)` at a turn of the angle θ between line and edge,
+/// Area laid twice at all turns, mm²: `S = r² (cot(θ/2) + θ/2 − π/2)` at a turn with the angle θ between line and edge,
 /// r half a bead (eqs 10 and 11). An edge has as many turns as lines fit across it, half of them at π − θ: together
-/// `r² (2 / sin θ − π/2)` for two, and none along the lines. The angle is in radians.
+/// `r² (2 / sin θ − π/2)` for each two, and none for an edge along the lines. `angle` is in radians.
 pub fn corner_area(region: &Region, angle: f64, settings: &FillSettings) -> f64 {
     let (r, line) = (settings.bead.width / 2.0, DVec2::from_angle(angle));
     let edge = |(a, b): (DVec2, DVec2)| {

@@ -1,5 +1,5 @@
-//! One helix on an island that goes all around an axis: rings one beside the other, with a short step from each to the next, so
-//! that the arc starts once and the part always turns the same way.
+//! One helix on an island that goes all the way around an axis: rings side by side, with a short step from each to the
+//! next, so that the arc starts once and the part always turns the same way.
 
 use super::{FillSettings, Path};
 use crate::pass::{Along, PassKind};
@@ -18,23 +18,24 @@ pub enum Around {
     Helix,
 }
 
-/// A layer that goes on turn after turn.
+/// Data of a layer that continues turn after turn around an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
     /// Length of a turn, mm.
     pub length: f64,
-    /// How many times the part can turn while the arc burns.
+    /// Most turns of the part in one pass.
     pub most: f64,
 }
 
-/// An edge is a ring if it deviates from one by no more than this, in bead widths.
+/// An edge counts as a ring if it deviates by at most this, in bead widths.
 const EVEN: f64 = 0.05;
-/// Two ends of an island lie a turn apart if that is true to this, mm: they overlap by a hair.
+/// Tolerance for two ends of an island being one turn apart, mm: they overlap slightly.
 const TURN: f64 = 0.01;
-/// Length of the step from a ring to the next, in bead widths.
+/// Length of the step from one ring to the next, in bead widths.
 const STEP: f64 = 1.5;
 
-/// The box of an island that goes all around, of which a turn is this long (mm), between two edges that are rings.
+/// The bounding box of an island that goes all the way around between two edges that are rings; `turn` is the length of
+/// a turn, mm, `width` that of a bead; `None` for other islands.
 pub fn band(island: &Polygon, turn: f64, width: f64) -> Option<Bounds> {
     let bounds = Bounds::of(island.outer.points().iter().copied())?;
     let off = |p: &DVec2| {
@@ -48,16 +49,16 @@ pub fn band(island: &Polygon, turn: f64, width: f64) -> Option<Bounds> {
     is_band.then_some(bounds)
 }
 
-/// One path that goes around as often as there are rings, unrolled turn after turn along x; `None` where the island does not
-/// go all around between two rings, beads would be narrower or wider than they may be, or the part cannot turn that often.
+/// One path with as many turns as there are rings, unrolled along x; `None` if the island is not a band between two
+/// rings, beads would be too narrow or too wide, or the part cannot turn that often.
 ///
-/// The first ring and the last one are whole, so the first step begins on metal and the last ring ends on it.
+/// The first ring and the last one are complete, so the first step starts on metal and the last ring ends on it.
 pub fn helix(island: &Polygon, settings: &FillSettings<'_>) -> Option<Path> {
     let Turn { length: turn, most } = settings.turn.filter(|_| settings.infill_density >= 1.0)?;
     let bounds = band(island, turn, settings.bead.width)?;
     let high = bounds.size().y + 2.0 * settings.machining_allowance;
     let part = settings.stepover / settings.bead.width;
-    // Rings as wide as the nominal bead, and the width with which a whole number of them fills the island.
+    // The number of rings of nominal width, and the width at which a whole number of them fills the island.
     let rings = ((high / settings.bead.width - 1.0) / part).round().max(0.0);
     let width = high / (1.0 + rings * part);
     let (narrowest, widest) = settings.one_loop.width_limits;
@@ -66,7 +67,7 @@ pub fn helix(island: &Polygon, settings: &FillSettings<'_>) -> Option<Path> {
         return None;
     }
     let (first, apart, step) = (bounds.min.y - settings.machining_allowance + width / 2.0, part * width, STEP * width);
-    // From layer to layer the helix climbs the other way.
+    // The helix climbs in the opposite direction on every other layer.
     let ring = |k: f64| first + apart * if settings.layer.is_multiple_of(2) { k } else { rings - k };
     let at = |x: f64, k: f64| DVec2::new(bounds.min.x + x, ring(k));
     let rings = rings as usize;

@@ -40,7 +40,7 @@ fn thick(part: &Polygon, settings: &FillSettings) -> Fill {
     within_perimeters(part, settings, |core| infill(core, settings))
 }
 
-/// Perimeters, and what `infill` lays in the core inside them.
+/// Perimeters, and the fill that `infill` lays in the core inside them.
 pub(super) fn within_perimeters(
     part: &Polygon,
     settings: &FillSettings,

@@ -6,13 +6,14 @@ use crate::process::Dot;
 use glam::DVec2;
 use planar::Polygon;
 
-/// The outline of the island may lie this far beyond the edge of the dot, in radii: at the corners of a square it is 0.25.
+/// Greatest distance of the island's outline beyond the edge of the dot, in radii: at the corners of a square it is
+/// 0.25.
 const BEYOND: f64 = 0.35;
 /// A disc of this many radii must fit into the island.
 const ROOM: f64 = 0.6;
 
-/// The dot that fills an island of a layer `height` mm thick; `None` where a dot of its metal has another shape, or takes a
-/// time that was not tried.
+/// The dot that fills an island of a layer `height` mm thick; `None` if a dot of that volume has another shape, or
+/// needs a time that was not tried.
 pub fn dot(island: &Polygon, height: f64, dot: &Dot) -> Option<Path> {
     let diameter = dot.diameter_of(island.area() * height)?;
     let (radius, middle) = (diameter / 2.0, island.outer.centroid()?);

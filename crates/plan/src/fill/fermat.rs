@@ -2,8 +2,8 @@
 //! every second contour and out along the others, so each begins and ends at its outer edge; pockets are attached to one another
 //! as in the tree of the contours, and the whole is one path.
 //!
-//! The paper ends a pocket wherever contours split; here it continues into the largest part. Its smoothing of the finished
-//! curve is left out: contours and links are laid as they are.
+//! The paper ends a pocket wherever contours split; here it continues into the largest part. The paper's smoothing of
+//! the finished curve is omitted: contours and links are laid as they are.
 
 use super::ring_tree::{self, Join};
 use super::{Fill, FillSettings, Strategy, thin};

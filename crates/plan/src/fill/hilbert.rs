@@ -16,7 +16,7 @@ pub struct Hilbert;
 
 /// Pieces are joined along the boundary over at most this many stepovers.
 const LONGEST_LINK: f64 = 4.0;
-/// No curve has more steps than 2 to this power along a side.
+/// The curve has at most 2 to this power steps along a side.
 const MOST_HALVINGS: u32 = 20;
 
 impl Strategy for Hilbert {
@@ -35,7 +35,7 @@ fn lines(core: &Region, settings: &FillSettings) -> Vec<Path> {
     lines.map(|points| Path::line(PassKind::Infill, points, settings.bead.width)).collect()
 }
 
-/// The runs of the curve that lie in the box around a region and one step beyond.
+/// The runs of the curve within the bounding box of a region and one step beyond.
 fn curve(region: &Region, settings: &FillSettings) -> Vec<Vec<DVec2>> {
     let Some(bounds) = region.bounds() else { return Vec::new() };
     let d = settings.stepover;
@@ -85,7 +85,8 @@ impl Walk {
     }
 }
 
-/// An end of a piece on the boundary: the piece, whether it is its last point, ring and distance along it, mm.
+/// An end of a piece on the boundary: the piece, whether it is its last point, the ring, and the distance along the
+/// ring, mm.
 #[derive(Debug, Clone, Copy)]
 struct End {
     piece: usize,
@@ -97,13 +98,13 @@ struct End {
 /// The end to which another is linked (piece, whether its last point), and the path to it.
 type Link = (usize, bool, Vec<DVec2>);
 
-/// Joins pieces of lines, whose ends lie on the boundary of a region, along it; between the two ends that a link joins
-/// there is no third.
+/// Joins pieces of lines whose ends lie on the boundary of a region along that boundary; no third end lies between the
+/// two ends that a link joins.
 fn joined(pieces: Vec<Vec<DVec2>>, region: &Region, longest: f64) -> Vec<Vec<DVec2>> {
     let rings: Vec<&Ring> = region.rings().collect();
     let mut links = links(&pieces, &rings, longest);
     links.sort_by(|a, b| a.2.total_cmp(&b.2));
-    // What each end is linked to, with the path to it.
+    // For each end, what it is linked to, with the path there.
     let mut linked: Vec<[Option<Link>; 2]> = vec![[None, None]; pieces.len()];
     let mut group: Vec<usize> = (0..pieces.len()).collect();
     for (from, to, length) in links {
@@ -145,7 +146,7 @@ fn joined(pieces: Vec<Vec<DVec2>>, region: &Region, longest: f64) -> Vec<Vec<DVe
     lines
 }
 
-/// Every pair of ends that follow each other along a ring, counter to no other, and the distance along the ring, mm.
+/// Every pair of consecutive ends along a ring, and their distance along the ring, mm.
 fn links(pieces: &[Vec<DVec2>], rings: &[&Ring], longest: f64) -> Vec<(End, End, f64)> {
     let mut near = LineIndex::new(longest);
     let closed = |ring: &Ring| ring.points().iter().chain(ring.points().first()).copied().collect::<Vec<_>>();
@@ -159,7 +160,7 @@ fn links(pieces: &[Vec<DVec2>], rings: &[&Ring], longest: f64) -> Vec<(End, End,
             let Some((ring, edge, a, foot)) = feet.min_by(|a, b| a.3.distance(p).total_cmp(&b.3.distance(p))) else {
                 continue;
             };
-            // Ends of the curve that lie inside are ends of the box.
+            // Ends of the curve inside the region are cut off by the box.
             if foot.distance(p) < 1e-3 {
                 on[ring].push(End { piece, last, ring, along: starts[ring][edge] + a.distance(foot) });
             }
@@ -186,7 +187,7 @@ fn starts(ring: &Ring) -> Vec<f64> {
     sums.collect()
 }
 
-/// The corners of a ring between a place along it and another one `length` further on.
+/// The corners of a ring between a position along it and one `length` further on.
 fn between(ring: &Ring, from: f64, length: f64) -> Vec<DVec2> {
     let (whole, starts) = (ring.length(), starts(ring));
     let mut found: Vec<(f64, DVec2)> =

@@ -1,4 +1,4 @@
-//! Finds the lines near a place: a grid of cells that hold pieces of lines.
+//! Finds the lines near a point: a grid of cells that hold pieces of lines.
 
 use glam::{DVec2, IVec2};
 use rustc_hash::FxHashMap;
@@ -12,7 +12,7 @@ pub struct LineIndex {
 /// Number of the line, number of the piece in it, and its ends.
 type Piece = (usize, usize, DVec2, DVec2);
 
-/// What is met in a direction.
+/// The first line met in a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sight {
     /// Number of the line.
@@ -66,7 +66,7 @@ impl LineIndex {
         self.around(a, b).any(|(_, _, c, d)| cut(c, d))
     }
 
-    /// Every piece near a place, with its number and that of its line; those within sight, and some beyond.
+    /// Every piece near a point, with its number and that of its line: all within sight, and some beyond.
     pub fn near(&self, place: DVec2) -> impl Iterator<Item = (usize, usize, DVec2, DVec2)> + '_ {
         self.around(place - self.size, place + self.size)
     }

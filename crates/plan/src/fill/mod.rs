@@ -43,18 +43,18 @@ pub trait Strategy: Sync {
     /// Lays passes into one island.
     fn fill(&self, island: &Polygon, settings: &FillSettings) -> Fill;
 
-    /// Lays passes into an island that is the same on several layers, [`Self::period`] apart; their settings differ in the
-    /// layer only.
+    /// Lays passes into an island that is the same on several layers, [`Self::period`] apart; their settings differ
+    /// only in the layer.
     fn fill_layers(&self, island: &Polygon, layers: &[FillSettings]) -> Vec<Fill> {
         layers.iter().map(|settings| self.fill(island, settings)).collect()
     }
 
-    /// After this many layers of the same shape most of the work is the same; `None` where every layer is different.
+    /// Number of layers of the same shape after which most of the work repeats; `None` if every layer is different.
     fn period(&self) -> Option<usize> {
         None
     }
 
-    /// Settings with which the strategy lays a simpler fill, the better first, for islands that it cannot fill with those given.
+    /// Settings for a simpler fill, the better first, for islands that the strategy cannot fill with the given ones.
     fn simpler<'a>(&self, _settings: &FillSettings<'a>) -> Vec<FillSettings<'a>> {
         Vec::new()
     }
@@ -74,7 +74,7 @@ pub trait Strategy: Sync {
         settings.wall.width_limits.0
     }
 
-    /// Whether it lays the same on every layer of the same shape and raster angle, whatever its number.
+    /// Whether layers of the same shape and raster angle get the same passes, whatever their number.
     fn repeats(&self) -> bool {
         false
     }
@@ -210,7 +210,7 @@ pub struct FillSettings<'a> {
     pub perimeters_first: bool,
     /// Density of the infill of `compound` where it may be sparse: the fraction that is filled, 0 to 1.
     pub infill_density: f64,
-    /// Where a sparse infill is nevertheless solid: near tops and bottoms. `None` where all of it is solid.
+    /// The area where a sparse infill is nevertheless solid: near tops and bottoms. `None` if all of it is solid.
     pub solid: Option<&'a Region>,
     /// How far beads may reach outside the island, mm.
     pub machining_allowance: f64,
@@ -228,9 +228,10 @@ pub struct FillSettings<'a> {
     pub wall: wall::WallSettings,
     /// How loops are laid.
     pub one_loop: one_loop::LoopOptions,
-    /// How far a helix goes on around an axis, where islands that go all around are filled with one.
+    /// The turns of a helix, if islands that go all the way around an axis are filled with one.
     pub turn: Option<around::Turn>,
-    /// A reference point, the same on all layers of a part; patterns that repeat over the layers are measured from it.
+    /// A reference point, mm, the same on all layers of a part; patterns that repeat over the layers are measured from
+    /// it.
     pub datum: DVec2,
 }
 
@@ -240,7 +241,7 @@ impl FillSettings<'_> {
         island.offset(self.machining_allowance - self.bead.width / 2.0, Join::ROUND)
     }
 
-    /// From this thickness on a wall has room for two of the narrowest beads side by side, mm.
+    /// From this thickness on a wall has space for two of the narrowest beads side by side, mm.
     pub fn double(&self) -> f64 {
         self.one_loop.width_limits.0 * (1.0 + self.stepover / self.bead.width)
     }

@@ -16,11 +16,11 @@ use std::cmp::Ordering::Equal;
 /// Zigzags in convex cells.
 pub struct Partition;
 
-/// Notches shallower than this many bead widths are left.
+/// Notches shallower than this many bead widths are left uncut.
 const SHALLOW: f64 = 1.0;
 /// Cuts begin and end this far outside, mm.
 const HAIR_MM: f64 = 1e-3;
-/// Cuts are longer than this, in stepovers: on a curve the nearest places lie on the curve itself.
+/// Cuts must be longer than this, in stepovers: on a curve the nearest points lie on the curve itself.
 const SHORTEST_CUT: f64 = 0.5;
 /// Edges run along a direction if they deviate by at most this much, rad.
 const PARALLEL: f64 = 0.01;
@@ -59,7 +59,8 @@ fn cells(core: &Region, settings: &FillSettings) -> Vec<Polygon> {
     cells
 }
 
-/// A zigzag in the direction in which a cell takes the fewest lines; of several, the one with the most outline along it.
+/// A zigzag in the direction in which a cell takes the fewest lines; among equals, the one with the most outline along
+/// it.
 fn lines_along(cell: Polygon, settings: &FillSettings) -> Vec<Path> {
     let hull = Ring::new(convex_hull(cell.outer.points()));
     let ways = hull.edges().chain(cell.outer.edges()).filter_map(|(a, b)| (b - a).try_normalize());
@@ -79,8 +80,8 @@ fn lines_along(cell: Polygon, settings: &FillSettings) -> Vec<Path> {
     zigzag::zigzag(&cell.into(), &FillSettings { raster_angle, ..*settings })
 }
 
-/// The place of a cell's outline that lies deepest inside its hull, if deeper than `shallow` (mm); any place of a hole is
-/// deep enough.
+/// The point of a cell's outline that lies deepest inside its hull, if deeper than `shallow` (mm); any point of a hole
+/// counts as deep enough.
 fn deepest_notch(cell: &Polygon, shallow: f64) -> Option<DVec2> {
     if let Some(hole) = cell.holes.first() {
         // Where the hole is nearest to the outline, so that the cut is short.
@@ -97,8 +98,8 @@ fn deepest_notch(cell: &Polygon, shallow: f64) -> Option<DVec2> {
     (deepest.1 > shallow).then_some(deepest.0)
 }
 
-/// The shortest straight cut through a cell from a place of its outline that is longer than `shortest` (mm), lengthened a
-/// little at both ends.
+/// The shortest straight cut through a cell from a point of its outline that is longer than `shortest` (mm), slightly
+/// lengthened at both ends.
 fn shortest_cut(cell: &Polygon, from: DVec2, shortest: f64) -> Option<[DVec2; 2]> {
     let edges: Vec<_> = cell.rings().flat_map(Ring::edges).collect();
     let mut feet: Vec<DVec2> = edges.iter().map(|edge| foot(*edge, from)).collect();

@@ -1,9 +1,9 @@
-//! Rings parallel to the boundary, as a tree: each is attached to a ring one level further out, or across a gap that no ring
-//! fills. Along it rings can be joined into one path.
+//! Rings parallel to the boundary, as a tree: each is attached to a ring one level further out, or across a gap that no
+//! ring fills. Rings can be joined into one path along the tree.
 //!
-//! A *chain* is a run of rings, each inside the one before. All its rings are opened at one seam, side by side, and joined there
-//! in one of two ways ([`Join`]). A chain on the side of a ring is a *detour*: it begins and ends beside that ring, which
-//! is opened there.
+//! A *chain* is a sequence of rings, each inside the one before. All its rings are opened at one seam, side by side,
+//! and joined there in one of two ways ([`Join`]). A chain on the side of a ring is a *detour*: it begins and ends
+//! beside that ring, which is opened there.
 
 use super::line_index::LineIndex;
 use super::{Fill, FillSettings, PassKind, Path, contour, sound};
@@ -26,7 +26,7 @@ pub(super) enum Join {
 const NEIGHBOUR: f64 = 1.3;
 /// Rings of one level face each other across a gap narrower than two stepovers.
 const ACROSS: f64 = 2.2;
-/// Rings are compared at places this far apart, in stepovers.
+/// Rings are compared at points this far apart, in stepovers.
 const SAMPLE: f64 = 0.5;
 /// Links along a chain are at most this long, in stepovers; where rings lie farther apart the chain ends.
 const LONGEST_LINK: f64 = 1.7;
@@ -37,25 +37,25 @@ const FERMAT_GAP: f64 = 1.0;
 const DETOUR_GAP: f64 = 0.5;
 /// Links are compared with the rings this far before and after a seam, in stepovers.
 const BESIDE: f64 = 3.0;
-/// No gap takes more than this fraction of a ring.
+/// Greatest fraction of a ring taken by a gap.
 const LARGEST_GAP: f64 = 0.2;
 /// Seams tried for a chain, and whole paths tried for an island until one crosses nothing.
 const SEAMS: usize = 24;
 const TRIES: usize = 8;
-/// Where all of them cross, rings this much closer to each other are tried, and again, up to this many times.
+/// If all of them cross, rings are laid closer by this factor, repeatedly, up to this many times.
 const CLOSER: f64 = 0.995;
 const CLOSER_TIMES: i32 = 6;
 /// The golden ratio spreads the seams of successive layers.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
-/// Fills an island with joined rings: one path for each part of it that a bead can pass through.
+/// Fills an island with joined rings: one path for each part of it through which a bead can pass.
 pub(super) fn joined(island: &Polygon, settings: &FillSettings, join: Join) -> Fill {
     let outermost = settings.outermost(island);
     let part = |part: &Polygon| path_through(part, island, settings, join);
     Fill { stages: vec![outermost.polygons().iter().flat_map(part).collect()], fixed_order: false }
 }
 
-/// The paths through one part; of several tries the first that is sound.
+/// The paths through one part; the first attempt that is sound.
 fn path_through(part: &Polygon, island: &Polygon, settings: &FillSettings, join: Join) -> Vec<Path> {
     let width = settings.bead.width;
     let mut last = Vec::new();
@@ -80,7 +80,7 @@ struct Loop {
     points: Vec<DVec2>,
     /// Distance of each point from the first, and the whole length, mm.
     along: Vec<f64>,
-    /// Stretches that links have taken: their middle and half their length, mm.
+    /// Sections used by links: their middle and half their length, mm.
     taken: Vec<(f64, f64)>,
 }
 
@@ -103,7 +103,7 @@ impl Loop {
         self.points.iter().chain(self.points.first()).copied().collect()
     }
 
-    /// The edge on which a place along the loop lies, and the place.
+    /// The edge that contains a position along the loop, and the point there.
     fn at(&self, along: f64) -> (usize, DVec2) {
         let along = along.rem_euclid(self.length());
         let edge = self.along.partition_point(|&s| s <= along).clamp(1, self.points.len()) - 1;
@@ -121,7 +121,7 @@ impl Loop {
         (self.points[(edge + 1) % self.points.len()] - self.points[edge]).normalize_or_zero()
     }
 
-    /// Where the loop comes nearest to a place, and its distance from it, mm.
+    /// The position along the loop nearest to a point, and its distance from it, mm.
     fn nearest(&self, to: DVec2) -> (f64, f64) {
         let feet = (0..self.points.len()).map(|k| {
             let (a, b) = (self.points[k], self.points[(k + 1) % self.points.len()]);
@@ -140,7 +140,7 @@ impl Loop {
         self.along = reversed.chain([length]).collect();
     }
 
-    /// The part of a gap that this loop can spare.
+    /// The part of a half gap that this loop can spare.
     fn spared(&self, half: f64) -> f64 {
         half.min(LARGEST_GAP / 2.0 * self.length())
     }
@@ -154,7 +154,7 @@ impl Loop {
         self.taken.iter().all(|&(middle, other)| apart(middle) >= half + other)
     }
 
-    /// The points from one place on, for a length.
+    /// The points from one position on, for a length.
     fn stretch(&self, from: f64, length: f64) -> Vec<DVec2> {
         let whole = self.length();
         let from = from.rem_euclid(whole);
@@ -179,19 +179,19 @@ struct RingTree {
     stepover: f64,
 }
 
-/// Another ring, and pairs of places that face each other: on the one and on the other.
+/// Another ring, and pairs of points that face each other: on this one and on the other.
 type Facing = (usize, Vec<[DVec2; 2]>);
 
-/// For every other ring the places that face each other, with their distance, mm.
+/// For every other ring the points that face each other, with their distance, mm.
 type Found = BTreeMap<usize, Vec<(f64, [DVec2; 2])>>;
 
-/// A ring that may be attached: whether it lies on the level of the other, when it was found, its number, and to which ring
-/// it attaches, with its place among the neighbours of that ring.
+/// A ring that may be attached: whether it is on the same level as the other ring, when it was found, its index, and
+/// the ring it attaches to, with its index among the neighbours of that ring.
 type Waiting = (bool, usize, usize, Option<(usize, usize)>);
 
 /// Rings joined at one seam.
 struct Chain {
-    /// From outside in, each with the place of the seam on it, mm along it.
+    /// From outside in: each ring with the position of the seam along it, mm.
     rings: Vec<(usize, f64)>,
     /// Whether a link crosses a ring.
     crosses: bool,
@@ -200,7 +200,7 @@ struct Chain {
 }
 
 impl Chain {
-    /// Which of two chains is laid: one that crosses nothing, the longer one, the one with shorter links.
+    /// Compares chains: one that crosses nothing is better, then the longer one, then the one with shorter links.
     fn cmp(&self, other: &Self) -> Ordering {
         let lengths = || other.rings.len().cmp(&self.rings.len());
         self.crosses.cmp(&other.crosses).then_with(lengths).then(self.longest.total_cmp(&other.longest))
@@ -229,7 +229,7 @@ impl RingTree {
         tree
     }
 
-    /// For every pair of neighbouring rings the places that face each other, the nearest first.
+    /// For every pair of neighbouring rings the points that face each other, the nearest first.
     fn neighbours(&self) -> Vec<Vec<Facing>> {
         let d = self.stepover;
         let mut near = LineIndex::new(ACROSS * d);
@@ -265,8 +265,8 @@ impl RingTree {
         found.into_iter().map(|of| of.into_iter().map(|(other, places)| (other, sorted(places))).collect()).collect()
     }
 
-    /// Attaches every ring to a neighbour attached to a root: rings a level apart first. Returns the rings, each after the
-    /// one to which it is attached.
+    /// Attaches every ring to a neighbour that is attached to a root: rings one level apart first. Returns the rings,
+    /// each after the one to which it is attached.
     fn hang(&mut self) -> Vec<usize> {
         let neighbours: Vec<Vec<Facing>> = self.neighbours();
         let mut known = vec![false; self.loops.len()];
@@ -307,10 +307,11 @@ impl RingTree {
         }
     }
 
-    /// One path for every root. `turn` says how far around the outermost ring the first seam is searched for.
+    /// One path for every root. `turn` is the offset around the outermost ring at which the search for the first seam
+    /// begins.
     fn paths(&mut self, join: Join, turn: f64) -> Vec<Vec<DVec2>> {
         let mut paths = Vec::new();
-        // Roots are added where a ring finds no room for a detour.
+        // A ring becomes a root where there is no space for a detour.
         let mut next = 0;
         while let Some(&root) = self.roots.get(next) {
             next += 1;
@@ -382,7 +383,7 @@ impl RingTree {
             lines.push(self.opened(ring, seam, half, next));
         }
         if first {
-            // The ends of the path close the gap of their rings except for half a stepover on each side of a link.
+            // The ends of the path close the gap in their rings, except for half a stepover on each side of a link.
             let beside = DETOUR_GAP * d;
             let longer = [2.0 * halves[0] - beside, halves.get(1).map_or(0.0, |half| half - beside)];
             let ends = if join == Join::Inwards { 1 } else { 2 };
@@ -397,8 +398,8 @@ impl RingTree {
         }
     }
 
-    /// A ring from after its seam to before it, with a detour through everything attached to it, except the next ring
-    /// of its chain.
+    /// A ring from after its seam to before it, with a detour through everything attached to it except the next ring of
+    /// its chain.
     fn opened(&mut self, ring: usize, seam: f64, half: f64, next: Option<usize>) -> Vec<DVec2> {
         let cut = self.loops[ring].spared(DETOUR_GAP * self.stepover);
         let mut detours = Vec::new();
@@ -413,7 +414,7 @@ impl RingTree {
         }
         let own = &self.loops[ring];
         let length = own.length();
-        // From after the seam on.
+        // Distance past the seam.
         let ahead = |along: f64| (along - seam).rem_euclid(length);
         detours.sort_by(|a, b| ahead(a.0).total_cmp(&ahead(b.0)));
         let (mut line, mut from) = (Vec::new(), half);
@@ -426,7 +427,7 @@ impl RingTree {
         line
     }
 
-    /// Where a ring is left for another attached to it, and where that one is entered; none where no place is free.
+    /// Where a ring is left for another attached to it, and where that one is entered; `None` if no place is free.
     fn beginning(&self, ring: usize, other: usize, places: &[[DVec2; 2]], cut: f64) -> Option<(f64, DVec2)> {
         let nearest = places.first().map(|[a, b]| a.distance(*b))?;
         let near = places.iter().take_while(|[a, b]| a.distance(*b) <= nearest + 0.2 * self.stepover).count();
@@ -440,8 +441,8 @@ impl RingTree {
     }
 }
 
-/// Opened rings from outside in, joined into a path that goes in along the even ones (counted from 1) and out along the odd
-/// ones. It begins next to the seam of the first ring and ends there.
+/// Opened rings from outside in, joined into a path that goes in along the even ones (counted from 1) and out along the
+/// odd ones. It begins next to the seam of the first ring and ends there.
 fn in_and_out(lines: Vec<Vec<DVec2>>) -> Vec<DVec2> {
     let (mut inwards, mut outwards) = (Vec::new(), Vec::new());
     for (k, line) in lines.into_iter().enumerate() {

@@ -1,6 +1,6 @@
-//! Whether the passes of an island can be welded at all: they stay inside it and do not cross each other.
+//! Whether the passes of an island can be welded: they stay inside it and do not cross each other.
 //!
-//! Every fill is checked, whatever strategy it is from, so that a fault of a strategy never reaches a robot.
+//! Every fill is checked, whichever strategy made it, so that a faulty strategy never reaches a robot.
 
 use super::Path;
 use glam::DVec2;
@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 /// Centre-lines may leave the outline by this much, mm: coordinates are rounded.
 pub const TOLERANCE_MM: f64 = 0.01;
 
-/// Places nearer to each other, mm, are one: programs give them no finer.
+/// Points nearer to each other, mm, are one: programs have no finer resolution.
 const FINEST_MM: f64 = 1e-3;
 
 /// A piece of a path: number of the path, number of the piece in it.
@@ -37,7 +37,7 @@ pub enum Fault {
     },
 }
 
-/// The first fault of an island's passes; centre-lines may lie outside by `allowance`, mm.
+/// The first fault of an island's passes; centre-lines may lie outside by `allowance`, mm. `None` if they are sound.
 ///
 /// ```
 /// use bead_plan::fill::Path;
@@ -77,7 +77,7 @@ fn note(cuts: &mut BTreeMap<Number, Vec<f64>>, piece: Number, cut: Option<f64>) 
     }
 }
 
-/// The place where a path is farthest outside.
+/// The point where a path is farthest outside.
 fn outside(
     lines: &[Vec<DVec2>],
     cuts: &BTreeMap<Number, Vec<f64>>,
@@ -89,7 +89,7 @@ fn outside(
         |p: DVec2| edges.iter().map(|&[a, b]| distance_squared_to_segment(p, a, b)).fold(f64::INFINITY, f64::min);
     let by = |p: DVec2| if inside(p) { 0.0 } else { square(p).sqrt() };
     let suspects = lines.iter().enumerate().flat_map(|(number, line)| {
-        // A path that crosses no edge lies inside as its first point does.
+        // A path that crosses no edge is inside if its first point is.
         let crosses = cuts.range((number, 0)..(number + 1, 0)).next().is_some();
         let pieces = if crosses { line.len() } else { 0 };
         let cuts = move |k: usize| cuts.get(&(number, k)).map_or(&[][..], Vec::as_slice);
@@ -100,8 +100,8 @@ fn outside(
     (worst.1 > allowance.max(0.0) + TOLERANCE_MM).then_some(Fault::Outside { place: worst.0, by: worst.1 })
 }
 
-/// Places at which a piece may lie farthest outside: between two cuts it lies either inside or outside, and one without cuts
-/// as its ends do.
+/// Points at which a piece may be farthest outside: between two cuts it lies either inside or outside, and a piece
+/// without cuts is like its ends.
 fn places(from: DVec2, to: DVec2, cuts: &[f64]) -> Vec<DVec2> {
     if cuts.is_empty() {
         return vec![to];
@@ -115,7 +115,7 @@ fn places(from: DVec2, to: DVec2, cuts: &[f64]) -> Vec<DVec2> {
     ends.windows(2).flat_map(between).map(|t| from.lerp(to, t)).collect()
 }
 
-/// Where on a piece it crosses an edge.
+/// The fraction of a piece at which it crosses an edge.
 fn cut([p, q]: Piece, [r, s]: Piece) -> Option<f64> {
     let (u, v) = (q - p, s - r);
     let across = u.perp_dot(v);
@@ -124,14 +124,14 @@ fn cut([p, q]: Piece, [r, s]: Piece) -> Option<f64> {
     (across != 0.0 && on(t) && on(w)).then_some(t)
 }
 
-/// Distance between the places at which a piece near the outline is checked, mm.
+/// Distance between the points at which a piece near the outline is checked, mm.
 const SAMPLE_MM: f64 = 0.25;
-/// A piece between two edges that it crosses is checked in at least, and at most, this many places.
+/// Least and greatest number of points at which a piece between two crossings is checked.
 const LEAST_SAMPLES: f64 = 8.0;
 const MOST_SAMPLES: f64 = 4000.0;
 
-/// Where lines cross an earlier line, or an earlier piece of their own: numbers of both lines, and the place.
-/// Neighbouring pieces, and lines that touch, do not count.
+/// Where lines cross an earlier line, or an earlier piece of themselves: indices of both lines, and the point, mm.
+/// Neighbouring pieces, and lines that only touch, do not count.
 pub fn crossings(lines: &[Vec<DVec2>]) -> impl Iterator<Item = (usize, usize, DVec2)> {
     let mut found = crossing_pieces(lines);
     found.sort_by(by_line);
@@ -149,7 +149,7 @@ pub(super) fn crossing_pieces(lines: &[Vec<DVec2>]) -> Vec<Crossing> {
 
 /// Where two pieces cross.
 pub(super) struct Crossing {
-    /// The pieces: numbers of their lines, the higher one first, and their numbers in them.
+    /// The pieces: indices of their lines, the higher one first, and of the pieces in them.
     pub(super) pieces: [Number; 2],
     place: DVec2,
 }
@@ -172,9 +172,9 @@ fn pieces(lines: &[Vec<DVec2>]) -> (Vec<Number>, Vec<Piece>) {
     lines.iter().enumerate().flat_map(of).unzip()
 }
 
-/// Where two pieces cross, or where their lines do at an end of a piece; neighbours on one line do not count.
+/// Where two pieces cross, or where their lines cross at an end of a piece; neighbours on one line do not count.
 fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Crossing> {
-    /// A place nearer than this to an end of a piece, in its lengths, is at the end.
+    /// A point nearer than this to an end of a piece, in its lengths, is at the end.
     const AT_END: f64 = 1e-6;
     if (j, l) > (i, k) {
         return crossing(lines, (j, l), (i, k));
@@ -193,10 +193,10 @@ fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Cros
     let place = p + u * t;
     let through = || {
         let (one, other) = (Bend::of(&lines[i], k, place)?, Bend::of(&lines[j], l, place)?);
-        // Whichever is looked at first: which one is depends on the way that a line is run through.
+        // Checked both ways, because the result would depend on the direction in which a line is traversed.
         (one.is_crossed_by(&other) && other.is_crossed_by(&one)).then_some(())
     };
-    // How far the ends of each piece lie from the line of the other: next to nothing where they run along each other.
+    // Distance of the ends of each piece from the line of the other: almost 0 where they run along each other.
     let sine = across.abs() / (u.length() * v.length());
     let inner = [(t, u), (w, v)].iter().all(|(x, way)| x.min(1.0 - x) * way.length() * sine > FINEST_MM);
     (inner || through().is_some()).then_some(Crossing { pieces: [(i, k), (j, l)], place })
@@ -206,7 +206,7 @@ fn crossing(lines: &[Vec<DVec2>], (i, k): Number, (j, l): Number) -> Option<Cros
 struct Bend([DVec2; 2]);
 
 impl Bend {
-    /// Of the piece with a number; `None` at an end of the line.
+    /// The bend at a piece of the line; `None` at an end of the line.
     fn of(line: &[DVec2], piece: usize, place: DVec2) -> Option<Self> {
         let closed = line.first() == line.last();
         let points = line.len() - usize::from(closed);
@@ -223,7 +223,7 @@ impl Bend {
         let from_back = |way: DVec2| self.0[0].angle_to(way).rem_euclid(TAU);
         let on = from_back(self.0[1]);
         let [a, b] = other.0.map(from_back);
-        // Lines that leave in the same direction overlap, and neither side is known.
+        // Lines that leave in the same direction overlap, so neither side is known.
         let beside = |way: DVec2| {
             self.0.iter().all(|own| {
                 own.dot(way) < 0.0 || own.perp_dot(way).abs() > FINEST_MM.min(0.01 * way.length()) * own.length()

@@ -109,7 +109,7 @@ impl<'a> Weave<'a> {
         }
     }
 
-    /// The merge that adds the least to the squared turns.
+    /// The merge that adds the least to the sum of squared turns.
     fn best_merge(&self) -> Option<Merge> {
         let mut best: Option<(f64, Merge)> = None;
         for star in &self.network.stars {
@@ -199,7 +199,7 @@ pub fn turn(a: f64, b: f64) -> f64 {
     PI - between.min(TAU - between)
 }
 
-/// The non-crossing pairing with the least sum of squared turns; if the number of darts is odd, one stays free.
+/// The non-crossing pairing with the least sum of squared turns; if the number of darts is odd, one is left free.
 fn pairing(star: &[(Dart, f64)]) -> Vec<(Dart, Dart)> {
     let count = star.len();
     // For the `length` darts from `start` on: the least cost, and the partner of the first.

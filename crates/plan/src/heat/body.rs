@@ -1,9 +1,9 @@
 //! Metal in voxels: what each holds, what it conducts to its neighbours, how warm it is.
 //!
-//! A voxel holds a volume of metal and the area that this covers seen from above; the two may be less than the voxel's
-//! own. So thin walls keep their metal and cross-section wherever they lie on the grid. What a face conducts follows from
-//! the geometric mean of the two cross-sections on either side, and what lies bare from their difference (finite volumes;
-//! Patankar, Numerical Heat Transfer and Fluid Flow, 1980, chapter 4).
+//! A voxel holds a volume of metal and the area that this covers seen from above; both may be less than the voxel's
+//! own, so thin walls keep their metal and cross-section wherever they lie on the grid. The conductance of a face
+//! follows from the geometric mean of the two cross-sections on either side, and its bare area from their difference
+//! (finite volumes; Patankar, Numerical Heat Transfer and Fluid Flow, 1980, chapter 4).
 
 use super::grid::Grid;
 use super::sweep::{self, Lags};
@@ -15,7 +15,7 @@ pub(super) const STEFAN_BOLTZMANN: f64 = 5.670_374e-14;
 /// Absolute temperature of 0 °C, K.
 pub(super) const KELVIN: f64 = 273.15;
 
-/// What takes heat from bare faces.
+/// Heat losses from bare faces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Air {
     /// Temperature of surroundings and table, °C.
@@ -29,13 +29,13 @@ pub struct Air {
 }
 
 impl Air {
-    /// Surroundings that take nothing, °C.
+    /// Surroundings at a temperature, °C, that take no heat.
     pub fn none(ambient: f64) -> Self {
         Self { ambient, convection: 0.0, emissivity: 0.0, contact: 0.0 }
     }
 }
 
-/// What a level of voxels is made of.
+/// Thermal properties of a level of voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stuff {
     /// Heat capacity, J/(mm³·K).
@@ -44,20 +44,20 @@ pub struct Stuff {
     pub conductivity: f64,
 }
 
-/// Metal in voxels. Temperatures are kept above that of the surroundings.
+/// Metal in voxels. Temperatures are stored relative to the surroundings.
 #[derive(Debug, Clone)]
 pub struct Body {
     pub(super) grid: Grid,
     pub(super) air: Air,
-    /// One for each level.
+    /// Properties of each level.
     stuff: Vec<Stuff>,
-    /// Of voxels that are not welded, where they may lie in any level, and which those are.
+    /// Properties of metal that is not welded, where it may lie in any level, and which voxels hold it.
     stock: Option<(Stuff, Vec<bool>)>,
-    /// Above the surroundings, K.
+    /// Temperature above the surroundings, K.
     pub(super) theta: Vec<f64>,
-    /// mm³.
+    /// Volume of metal, mm³.
     metal: Vec<f64>,
-    /// mm², seen from above.
+    /// Area of the metal seen from above, mm².
     area: Vec<f64>,
     /// Heat capacity, J/K.
     pub(super) capacity: Vec<f64>,
@@ -65,31 +65,32 @@ pub struct Body {
     pub(super) across: [Vec<f64>; 3],
     /// Bare area across each axis, mm².
     pub(super) bare: [Vec<f64>; 3],
-    /// All of it, mm².
+    /// Total bare area, mm².
     pub(super) bare_area: f64,
-    /// Area that lies on the table, mm²: of the lowest level, or of every voxel where any may ([`Self::hold`]).
+    /// Area in contact with the table, mm²: of the lowest level, or of every voxel if any may touch it
+    /// ([`Self::hold`]).
     pub(super) table: Vec<f64>,
     /// True area of the sides of a level over that of its voxels' sides.
     pub(super) sides: Vec<f64>,
-    /// The same across z.
+    /// The same for horizontal faces.
     pub(super) upright: f64,
     /// Number of levels that hold metal, from the lowest on.
     pub(super) levels: usize,
     supplied: f64,
     lost: f64,
-    /// Time that has passed, s, and what has not yet been advanced by all of it.
+    /// Time that has passed, s; levels and tiles may lag behind it.
     pub(super) clock: f64,
     pub(super) lags: Lags,
     /// Number of voxels of each level that are bare across each axis.
     pub(super) exposed: [Vec<usize>; 3],
-    /// Where each level has metal, along x and y: nothing beyond it is swept.
+    /// Extent of each level's metal along x and y: nothing beyond it is swept.
     pub(super) extents: Vec<[Range<usize>; 2]>,
     /// Number of levels up to the highest metal, of every tile of columns.
     pub(super) tops: Vec<usize>,
 }
 
 impl Body {
-    /// An empty grid; one [`Stuff`] for each level.
+    /// An empty grid; one [`Stuff`] per level.
     pub fn new(grid: Grid, stuff: Vec<Stuff>, air: Air) -> Self {
         let none = vec![0.0; grid.len()];
         let three = || [none.clone(), none.clone(), none.clone()];
@@ -130,8 +131,8 @@ impl Body {
         self.place(&full, temperature);
     }
 
-    /// Metal at a temperature (°C): voxels, with the volume (mm³) that comes to each and the area (mm²) that all of its metal then
-    /// covers seen from above.
+    /// Adds metal at a temperature (°C): voxels, each with the volume added (mm³) and the area (mm²) that all of its
+    /// metal then covers seen from above.
     pub(super) fn place(&mut self, metal: &[(usize, f64, f64)], temperature: f64) {
         let theta = temperature - self.air.ambient;
         for &(voxel, volume, area) in metal {
@@ -144,8 +145,8 @@ impl Body {
         self.refresh(&metal.iter().map(|(voxel, ..)| *voxel).collect::<Vec<_>>());
     }
 
-    /// Adds metal (mm³) at the temperature of the surroundings; `area` (mm²) is all that the voxel's metal then covers seen
-    /// from above. [`Self::refresh`] must follow.
+    /// Adds metal (mm³) at the temperature of the surroundings; `area` (mm²) is the total that the voxel's metal then
+    /// covers seen from above. [`Self::refresh`] must follow.
     pub(super) fn add(&mut self, voxel: usize, volume: f64, area: f64) {
         let [x, y, level] = self.grid.place(voxel);
         let capacity = volume * self.stuff(voxel).capacity;
@@ -162,7 +163,7 @@ impl Body {
         *top = (*top).max(level + 1);
     }
 
-    /// Heats a voxel, J. One without metal takes nothing.
+    /// Heats a voxel, J. One without metal takes no heat.
     pub fn heat(&mut self, voxel: usize, joules: f64) {
         if self.capacity[voxel] > 0.0 {
             self.theta[voxel] += joules / self.capacity[voxel];
@@ -171,17 +172,17 @@ impl Body {
         }
     }
 
-    /// Advances every place by all the time that has passed.
+    /// Advances every level and tile by all the time that has passed.
     pub(super) fn settle(&mut self) {
         self.lost += sweep::settle(self);
     }
 
-    /// What lies around a voxel takes part in the next steps, and so is advanced by all the time that has passed.
+    /// The neighbourhood of a voxel takes part in the next steps, after being advanced by all the time that has passed.
     pub(super) fn wake(&mut self, voxel: usize) {
         sweep::wake(self, voxel);
     }
 
-    /// Recomputes what conducts and what lies bare, at these voxels and next to them.
+    /// Recomputes conductances and bare areas at these voxels and next to them.
     pub(super) fn refresh(&mut self, voxels: &[usize]) {
         let strides = self.grid.strides();
         for &voxel in voxels {
@@ -207,14 +208,14 @@ impl Body {
         }
     }
 
-    /// Metal that is not welded may lie in any level from now on, and only it lies on the table.
+    /// Lets metal that is not welded lie in any level, and be the only metal on the table.
     pub(super) fn with_stock(mut self, stuff: Stuff) -> Self {
         self.stock = Some((stuff, vec![false; self.grid.len()]));
         self.table = vec![0.0; self.grid.len()];
         self
     }
 
-    /// Metal that is not welded, as [`Self::place`] takes it, and the area (mm²) of each voxel that lies on the table.
+    /// Adds metal that is not welded, as [`Self::place`] does, and the area (mm²) of each voxel that lies on the table.
     pub(super) fn hold(&mut self, metal: &[(usize, f64, f64)], areas: &[(usize, f64)], temperature: f64) {
         if let Some((_, voxels)) = &mut self.stock {
             metal.iter().for_each(|&(voxel, ..)| voxels[voxel] = true);
@@ -228,7 +229,7 @@ impl Body {
         if axis == 2 { self.area[voxel] } else { self.metal[voxel] / self.grid.size(voxel)[axis] }
     }
 
-    /// Half of the distance through a voxel's metal, over its conductivity, mm²·K/W.
+    /// Half the distance through a voxel's metal, over its conductivity, mm²·K/W.
     fn resistance(&self, voxel: usize, axis: usize) -> f64 {
         let length = if axis == 2 { self.metal[voxel] / self.area[voxel] } else { self.grid.size(voxel)[axis] };
         length / 2.0 / self.stuff(voxel).conductivity
@@ -276,7 +277,7 @@ impl Body {
         of(0) + of(1)
     }
 
-    /// Lets time pass, s, in one step of the implicit scheme (`sweep.rs`).
+    /// Advances by a time, s, in one step of the implicit scheme (`sweep.rs`).
     pub fn step(&mut self, seconds: f64) {
         if seconds <= 0.0 {
             return;
@@ -299,7 +300,7 @@ impl Body {
         &self.grid
     }
 
-    /// Heat that the metal holds above the temperature of the surroundings, J.
+    /// Heat content of the metal above the temperature of the surroundings, J.
     ///
     /// ```
     /// use bead_plan::heat::{Air, Body, Grid, Stuff};
@@ -318,12 +319,12 @@ impl Body {
         self.theta.iter().zip(&self.capacity).map(|(theta, capacity)| theta * capacity).sum()
     }
 
-    /// Heat put in so far, J.
+    /// Heat supplied so far, J.
     pub fn supplied(&self) -> f64 {
         self.supplied
     }
 
-    /// Heat that surroundings and table have taken so far, J, counted face by face.
+    /// Heat lost to surroundings and table so far, J, summed over the faces.
     pub fn lost(&self) -> f64 {
         self.lost
     }
@@ -334,7 +335,7 @@ impl Body {
         self.metal[plane * level..plane * (level + 1)].iter().sum()
     }
 
-    /// Mean temperature of a level's metal, °C; that of the surroundings where it has none.
+    /// Mean temperature of a level's metal, °C; that of the surroundings if it has none.
     pub fn level_temperature(&self, level: usize) -> f64 {
         let plane = self.grid.strides()[2];
         let voxels = plane * level..plane * (level + 1);

@@ -16,29 +16,30 @@ use std::ops::Range;
 /// Metal is laid in pieces of this length, in voxels.
 const CHUNK: f64 = 4.0;
 
-/// Levels hold as many layers as fit into this height, in voxels.
+/// A level of voxels takes layers until it is this thick, in voxels.
 const LEVEL: f64 = 0.5;
 
 /// Steps of waiting grow by this factor …
 const GROWTH: f64 = 1.4;
 
-/// … from this one on, over the time in which heat crosses a voxel …
+/// … from this one on, in units of the time in which heat crosses a voxel …
 const FIRST_STEP: f64 = 1.0;
 
-/// … to this one, or to this fraction of the wait so far: longer ones let too little heat turn the corner from wall to plate.
+/// … to this one, or to this fraction of the wait so far: longer steps let too little heat pass from the wall into the
+/// plate.
 const LAST_STEP: f64 = 1.0;
 const PART_OF_WAIT: f64 = 0.04;
 
-/// Longest steps of what lies far from the torch, over the same time.
+/// Longest steps far from the torch, in the same unit.
 const PATIENCE: f64 = 2.0;
 
-/// Metal is laid at places this far apart along and across a bead, in voxels.
+/// Spacing of the points along and across a bead at which metal is laid, in voxels.
 const FINE: f64 = 0.25;
 
 /// Lengths are equal to within this, mm.
 const ROUNDING: f64 = 1e-6;
 
-/// No part is divided into more voxels: they take about 100 bytes each.
+/// Most voxels of a part: they take about 100 bytes each.
 pub const MOST_VOXELS: usize = 8_000_000;
 
 /// The longest wait for a pass, s: what has not cooled by then never will.
@@ -51,9 +52,9 @@ pub struct PassHeat {
     pub at: f64,
     /// How long the torch waited for the metal to cool.
     pub wait: f64,
-    /// Of the metal below where the arc starts, just before.
+    /// Temperature of the metal below where the arc starts, just before, °C.
     pub start: f64,
-    /// Of the metal just ahead of the torch along the pass, from its start on, every [`Build::spacing`] mm.
+    /// Temperature of the metal just ahead of the torch along the pass, every [`Build::spacing`] mm from its start, °C.
     pub along: Vec<f64>,
 }
 
@@ -63,8 +64,8 @@ impl PassHeat {
         self.along.iter().sum::<f64>() / self.along.len().max(1) as f64
     }
 
-    /// Mean temperature just ahead of the torch on a stretch of the pass (mm), where temperatures are given every `spacing`
-    /// (mm); °C.
+    /// Mean temperature just ahead of the torch over a range of the pass (mm), °C; `spacing` is that of the
+    /// temperatures (mm).
     pub fn ahead(&self, stretch: Range<f64>, spacing: f64) -> f64 {
         let [first, last] = [stretch.start, stretch.end].map(|way| (way / spacing).round() as usize);
         let end = (last + 1).min(self.along.len());
@@ -72,7 +73,7 @@ impl PassHeat {
         if known.is_empty() { self.start } else { known.iter().sum::<f64>() / known.len() as f64 }
     }
 
-    /// The hottest place ahead of the torch: its index in `along`, and its temperature, °C.
+    /// The greatest temperature ahead of the torch: its index in `along`, and its value, °C.
     pub fn peak(&self) -> (usize, f64) {
         let places = self.along.iter().copied().enumerate();
         places.fold((0, self.start), |hottest, place| if place.1 > hottest.1 { place } else { hottest })
@@ -84,16 +85,16 @@ impl PassHeat {
 pub struct LayerHeat {
     /// Its passes in order.
     pub passes: Vec<PassHeat>,
-    /// Mean of what lies below when the layer begins: the layer before, or the plate.
+    /// Mean temperature of the metal below when the layer begins: the layer before, or the plate.
     pub below: f64,
-    /// When its last arc goes out, s from the beginning of the build.
+    /// When its last arc ends, s from the beginning of the build.
     pub end: f64,
-    /// Where passes were cut, since the metal ahead was too hot, mm.
+    /// Where passes were cut because the metal ahead was too hot, mm.
     #[serde(skip)]
     pub cuts: Vec<DVec2>,
 }
 
-/// A temperature limit is kept to within this, K.
+/// Tolerance of a temperature limit, K.
 pub const NOISE: f64 = 1.0;
 
 impl LayerHeat {
@@ -117,21 +118,21 @@ pub struct Build {
     pub(super) torch: Torch,
     pub(super) body: Body,
     frame: Frame,
-    /// What is known of the surface of a build in space.
+    /// Surface areas of a build in space.
     pub(super) skin: Skin,
     /// Side area of the layers in every level, mm².
     sides: Vec<f64>,
-    /// Area of each voxel that the current layer covers, mm², and which voxels those are.
+    /// Area of each voxel that the current layer covers, mm², and the indices of those voxels.
     covered: Vec<f64>,
     touched: Vec<usize>,
-    /// Time since the beginning, s, and the last part of it, by which the body has not been advanced yet.
+    /// Time since the beginning, s, and the part of it by which the body has not yet been advanced.
     pub(super) now: f64,
     pub(super) pending: f64,
 }
 
 impl Build {
-    /// A plate for a part within `bounds` (mm) whose layers have these tops and thicknesses (mm). Voxels become larger than
-    /// the settings say where there would be more than [`MOST_VOXELS`].
+    /// A plate for a part within `bounds` (mm) whose layers have these tops and thicknesses (mm). Voxels are larger
+    /// than in the settings if there would be more than [`MOST_VOXELS`].
     pub fn new(settings: &HeatSettings, weld: &WeldSettings, bounds: &Bounds, layers: &[(f64, f64)]) -> Self {
         let mut settings = settings.clone();
         let (mut grid, mut levels, mut plate_levels) = voxels(&settings, bounds, layers);
@@ -178,8 +179,8 @@ impl Build {
         build
     }
 
-    /// Sets the longest steps of what lies far from the torch, over the time in which heat crosses a voxel. With 0 every step is
-    /// as short as near the torch: slower, and what tests compare with.
+    /// Sets the longest steps far from the torch, in units of the time in which heat crosses a voxel. With 0 every step
+    /// is as short as near the torch: slower; the reference in tests.
     #[doc(hidden)]
     pub fn be_patient(&mut self, steps: f64) {
         self.body.lags.patience = steps * self.crossing();
@@ -210,7 +211,7 @@ impl Build {
         self.now
     }
 
-    /// Builds a layer with the waits that its passes have.
+    /// Builds a layer with the waits of its passes.
     pub fn layer(&mut self, layer: &Layer) -> LayerHeat {
         let mut heat = self.begin(layer);
         let on = self.on(layer);
@@ -219,7 +220,7 @@ impl Build {
         LayerHeat { end: self.now, ..heat }
     }
 
-    /// Begins a layer: the wait that it needs for reasons other than heat.
+    /// Begins a layer with the wait that it needs for reasons other than heat.
     pub(super) fn begin(&mut self, layer: &Layer) -> LayerHeat {
         self.process = self.nominal.at_layer(layer.index);
         let begun = self.torch.begin_layer(layer, 0);
@@ -229,7 +230,7 @@ impl Build {
         LayerHeat { passes: Vec::new(), below: self.below(layer), end: self.now, cuts: Vec::new() }
     }
 
-    /// Mean temperature of what lies below a layer, °C.
+    /// Mean temperature of the metal below a layer, °C.
     fn below(&self, layer: &Layer) -> f64 {
         let Frame::Level(levels) = &self.frame else {
             let on = self.frame.on(layer);
@@ -239,13 +240,13 @@ impl Build {
             return if count > 0 { sum / f64::from(count) } else { self.settings.heat.ambient };
         };
         let level = |layer: usize| levels.get(layer).or(levels.last()).copied().unwrap_or_default();
-        // The layer before may lie in the same level of voxels; an empty one left nothing.
+        // The layer before may be in the same level of voxels; an empty layer left no metal.
         let under = layer.index.checked_sub(1).map_or(level(0).saturating_sub(1), level);
         let below = (0..=under).rev().find(|level| self.body.level_metal(*level) > 0.0).unwrap_or_default();
         self.body.level_temperature(below)
     }
 
-    /// Ends a layer: now its sides are known.
+    /// Ends a layer, now that its sides are known.
     pub(super) fn end(&mut self, layer: &Layer) {
         let welded = |island: &&Polygon| {
             let starts = layer.passes.iter().filter_map(Pass::start);
@@ -266,13 +267,13 @@ impl Build {
         self.touched.drain(..).for_each(|voxel| self.covered[voxel] = 0.0);
     }
 
-    /// Time passes; the body is advanced by it before its temperatures are next asked for.
+    /// Lets time pass; the body is advanced by it before a temperature is next read.
     pub(super) fn spend(&mut self, seconds: f64) {
         self.now += seconds;
         self.pending += seconds;
     }
 
-    /// Advances the body by the time that has passed; by all of it where a temperature is to be read, at a place of a layer.
+    /// Advances the body by the time that has passed; fully, if a temperature is to be read at a point of a layer.
     pub(super) fn catch_up(&mut self, at: Option<(On, DVec2)>) {
         let (mut step, whole) = (FIRST_STEP * self.crossing(), self.pending);
         let place = at.map(|(on, at)| self.frame.voxel(self.body.grid(), on, at));
@@ -303,8 +304,8 @@ impl Build {
         self.frame.on(layer)
     }
 
-    /// Temperature of the metal under a place of a layer, °C: the mean of the uppermost voxels within a bead's width. What
-    /// lies more than a level deeper, such as the plate next to a wall, does not count.
+    /// Temperature of the metal under a point of a layer, °C: the mean of the uppermost voxels within a bead's width.
+    /// Metal more than a level deeper, such as the plate next to a wall, does not count.
     pub(super) fn surface(&self, on: On, at: DVec2) -> f64 {
         let reach = 0.35 * self.settings.bead_width;
         let body = &self.body;
@@ -318,7 +319,7 @@ impl Build {
         if weight > 0.0 { heat / weight } else { self.settings.heat.ambient }
     }
 
-    /// Builds a pass of a layer, after the wait that it has; `None` if it has no points.
+    /// Builds a pass of a layer after its wait; `None` if it has no points.
     pub(super) fn pass(&mut self, on: On, pass: &Pass) -> Option<PassHeat> {
         let start = pass.start()?;
         let pause = self.torch.wait(pass.wait);
@@ -340,7 +341,8 @@ impl Build {
         Some(heat)
     }
 
-    /// Lays a path of points and paces chunk by chunk, within `moving` seconds; temperatures ahead of the torch, °C.
+    /// Lays a path of points and paces chunk by chunk, within `moving` seconds; returns the temperatures ahead of the
+    /// torch, °C.
     fn weld(&mut self, on: On, moves: &[(DVec3, f64)], pass: &Pass, moving: f64) -> Vec<f64> {
         let pieces = || moves.windows(2).map(|w| (w[0].0.truncate(), w[1].0.truncate(), w[1].1));
         let steady: f64 = pieces().map(|(a, b, pace)| a.distance(b) / self.process.speed_at(pace)).sum();
@@ -349,7 +351,7 @@ impl Build {
         let mut left = total;
         let width = pass.segments().map(|s| s.length() * s.width).sum::<f64>() / pass.length().max(1e-9);
         let (mut chunk, mut along) = (Chunk::default(), Vec::new());
-        // The arc burns before the torch leaves.
+        // The arc burns before the torch moves off.
         if let Some((_, pace)) = moves.get(1) {
             chunk.joules += self.settings.power_at(&self.process, *pace) * self.process.arc_start_delay;
         }
@@ -376,12 +378,12 @@ impl Build {
         if let Some((end, _)) = moves.last() {
             self.finish(on, &mut chunk, end.truncate());
         }
-        // At its end nothing is ahead.
+        // Nothing is ahead at its end.
         along.truncate(((total - ROUNDING) / spacing).max(0.0) as usize);
         along
     }
 
-    /// The arc burns on at the end of a pass.
+    /// Lets the arc burn on the spot at the end of a pass.
     fn crater(&mut self, on: On, moves: &[(DVec3, f64)], width: f64, seconds: f64) {
         let (Some((end, pace)), true) = (moves.last(), seconds > 0.0) else { return };
         let feed = self.torch.crater_feed();
@@ -390,7 +392,7 @@ impl Build {
         chunk.joules = self.settings.power_at(&self.process, *pace) * seconds * feed / self.torch.feed_at(*pace);
         let end = end.truncate();
         let before = moves.iter().rev().nth(1).map_or(end, |(before, _)| before.truncate());
-        // On the last half of a bead's width.
+        // Over the last half bead width.
         let back = (before - end).normalize_or(DVec2::X) * width / 2.0;
         self.cover([end + back, end], width, volume, on, &mut chunk);
         self.finish(on, &mut chunk, end);
@@ -410,7 +412,7 @@ impl Build {
         }
     }
 
-    /// Lays and heats what a chunk holds, and lets its time pass; returns the temperature just ahead of its end, °C.
+    /// Adds the metal and heat of a chunk and lets its time pass; returns the temperature just ahead of its end, °C.
     fn finish(&mut self, on: On, chunk: &mut Chunk, end: DVec2) -> f64 {
         let Chunk { mut metal, joules, seconds, .. } = std::mem::take(chunk);
         if metal.is_empty() {
@@ -426,7 +428,7 @@ impl Build {
                 self.touched.push(voxel);
             }
             self.covered[voxel] += alike.iter().map(|(.., area)| area).sum::<f64>();
-            // What stands on edge covers as much of its voxel as of the room in it.
+            // A layer on edge covers the fraction of its voxel that its metal fills.
             let filled = (self.body.metal(voxel) + volume) / self.body.grid().size(voxel).z;
             let area = match self.frame {
                 Frame::Level(_) => self.covered[voxel],
@@ -443,7 +445,7 @@ impl Build {
     }
 }
 
-/// Where the voxels lie: the grid, the level of every layer, and the number of levels of the plate.
+/// The grid, the level of every layer, and the number of levels of the plate.
 fn voxels(settings: &HeatSettings, bounds: &Bounds, layers: &[(f64, f64)]) -> (Grid, Vec<usize>, usize) {
     let (voxel, plate) = (settings.voxel(), &settings.substrate);
     let beyond = settings.bead_width / 2.0;
@@ -455,7 +457,7 @@ fn voxels(settings: &HeatSettings, bounds: &Bounds, layers: &[(f64, f64)]) -> (G
     let mut heights: Vec<f64> = (0..=plate_levels).map(depth).collect();
     let (mut levels, mut from) = (Vec::with_capacity(layers.len()), bottom);
     for (i, &(z, _)) in layers.iter().enumerate() {
-        // Parts that are built one after another have layers of the same height more than once.
+        // Parts built one after another repeat layer heights.
         if z <= from && i > 0 {
             levels.push(levels[i - 1]);
             continue;
@@ -469,7 +471,7 @@ fn voxels(settings: &HeatSettings, bounds: &Bounds, layers: &[(f64, f64)]) -> (G
     (Grid::new([edges(0), edges(1), heights]), levels, plate_levels)
 }
 
-/// Metal and heat that come into the body together.
+/// Metal and heat that enter the body together.
 #[derive(Default)]
 struct Chunk {
     /// Voxel, volume (mm³), area (mm²).

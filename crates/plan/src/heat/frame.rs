@@ -1,4 +1,4 @@
-//! Where layers lie in the grid: level ones in levels of voxels, all others wherever their charts take them.
+//! Position of layers in the grid: level ones in levels of voxels, all others wherever their charts put them.
 
 use super::body::Body;
 use super::grid::Grid;
@@ -7,46 +7,46 @@ use bead_part::chart::{Chart, Sheet};
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use planar::Bounds;
 
-/// Metal below a place is looked for in steps of half a voxel …
+/// Metal below a point is searched for in steps of half a voxel …
 const STEP: f64 = 0.5;
 
 /// … down to six voxels below the middle of the layer.
 const DEEPEST: f64 = 6.0;
 
-/// A voxel with less metal than this part of what it holds is the edge of metal that lies in the next one.
+/// A voxel with less than this fraction of the metal it can hold is the edge of metal in the next one.
 const SLIVER: f64 = 0.05;
 
-/// Places on each side of a site at which its extent in space is taken.
+/// Points on each side of a site at which its extent in space is taken.
 const PLACES: usize = 48;
 
-/// Where a body's layers begin: on a plate, or on metal that is not welded.
+/// The ground of a body: on a plate, or on metal that is not welded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Site {
-    /// How the layers lie in space.
+    /// The shape of its layers.
     pub chart: Chart,
     /// The box around the body's metal in space, mm.
     pub space: [DVec3; 2],
-    /// What the body covers of the surface on which it begins, mm.
+    /// The area of the starting surface that the body covers, mm.
     pub ground: Bounds,
 }
 
-/// A layer as the grid sees it.
+/// The position of a layer in the grid.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct On {
     /// Level of voxels, if layers are level.
     pub(super) level: usize,
     body: usize,
-    /// mm
+    /// Height of its middle, mm.
     middle: f64,
     height: f64,
 }
 
-/// How layers lie in the grid.
+/// How layers are mapped to the grid.
 #[derive(Debug, Clone)]
 pub(super) enum Frame {
     /// Level layers: the level of voxels of each.
     Level(Vec<usize>),
-    /// Layers in space: how those of each body lie.
+    /// Layers in space: the chart of each body.
     Space(Vec<Chart>),
 }
 
@@ -71,7 +71,7 @@ impl Frame {
         }
     }
 
-    /// At how many places through the thickness of a layer metal is laid, if they are this far apart, mm.
+    /// The number of points through the thickness of a layer at which metal is laid, if they are `apart` mm apart.
     pub(super) fn deep(&self, on: On, apart: f64) -> usize {
         match self {
             Self::Level(_) => 1,
@@ -79,8 +79,8 @@ impl Frame {
         }
     }
 
-    /// The voxels that hold the cross-section of a bead: looked up at `across` places from edge to edge (`side`, mm) and `deep` ones
-    /// through its thickness; each with the part of the bead's area that is seen from above.
+    /// The voxels that hold the cross-section of a bead: looked up at `across` points from edge to edge (`side`, mm)
+    /// and `deep` points through its thickness; each with the fraction of the bead's area seen from above.
     pub(super) fn across(
         &self,
         grid: &Grid,
@@ -108,7 +108,7 @@ impl Frame {
         }
     }
 
-    /// The uppermost metal below a place: its level, or minus its depth in voxels, and its voxel.
+    /// The uppermost metal below a point: its level, or minus its depth in voxels, and its voxel.
     pub(super) fn uppermost(&self, body: &Body, on: On, at: DVec2, voxel: f64) -> Option<(isize, usize)> {
         let grid = body.grid();
         match self {
@@ -131,13 +131,14 @@ impl Frame {
     }
 }
 
-/// The box around places: its lowest and its highest corner.
+/// The box around points: its lowest and its highest corner.
 fn around(places: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     places.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
 }
 
 impl Site {
-    /// The site of a body whose metal reaches so far `beyond` these places, each unrolled at its own height, mm; `None` without any.
+    /// The site of a body whose metal extends `beyond` these points (mm), each unrolled at its own height; `None`
+    /// without any points.
     pub fn of(chart: &Chart, places: &[DVec3], beyond: f64) -> Option<Self> {
         let ground = chart.sheet(0.0);
         let Bounds { min, max } = Bounds::of(places.iter().map(|p| ground.across(p.truncate(), &chart.sheet(p.z))))?;
@@ -147,8 +148,8 @@ impl Site {
         Some(Self { chart: chart.clone(), space, ground })
     }
 
-    /// The box around all sites in space, and around the metal that lies under them, `depth` thick and `margin` wider than their
-    /// ground, mm: `[low, high]` of what is welded, and of all.
+    /// The box around all sites in space and the metal under them, `depth` thick and `margin` wider than their ground,
+    /// mm: `[low, high]` of what is welded, and of everything.
     pub(super) fn boxes<'a>(sites: impl Iterator<Item = &'a Self> + Clone, depth: f64, margin: f64) -> [[DVec3; 2]; 2] {
         if sites.clone().next().is_none() {
             return [[DVec3::ZERO; 2]; 2];
@@ -167,13 +168,13 @@ impl Site {
         around(points)
     }
 
-    /// The part of a voxel, from 0 to 1, that belongs to the metal under the site between two heights, mm.
+    /// The fraction of a voxel, 0 to 1, that belongs to the metal under the site between two heights, mm.
     pub(super) fn part(&self, grid: &Grid, voxel: usize, heights: [f64; 2], margin: f64) -> f64 {
         const THIRDS: [f64; 3] = [-1.0 / 3.0, 0.0, 1.0 / 3.0];
         let (middle, size) = (grid.middle(voxel), grid.size(voxel));
         let at = self.chart.coordinates(middle);
         let normal = self.chart.sheet(at.z).at(at).normal.abs();
-        // Along the normal, the voxel reaches as far as its own area there says.
+        // Half the extent of the voxel along the normal: its volume over its area seen along the normal.
         let half = size.element_product() / (size.yzx() * size.zxy()).dot(normal) / 2.0;
         let within = (heights[1].min(at.z + half) - heights[0].max(at.z - half)) / (2.0 * half);
         if within <= 0.0 {
@@ -185,7 +186,7 @@ impl Site {
         within * above as f64 / 27.0
     }
 
-    /// Whether a place in space lies above or below the ground of the site.
+    /// Whether a point in space lies above or below the ground of the site.
     fn is_above(&self, place: DVec3, margin: f64) -> bool {
         let at = self.chart.coordinates(place);
         let (ground, own) = (self.chart.sheet(0.0), self.chart.sheet(at.z));

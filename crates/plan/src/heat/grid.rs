@@ -41,7 +41,7 @@ impl Grid {
         [1, nx, nx * ny]
     }
 
-    /// Place of a voxel along each axis.
+    /// Index of a voxel along each axis.
     pub fn place(&self, voxel: usize) -> [usize; 3] {
         let [nx, ny, _] = self.counts();
         [voxel % nx, voxel / nx % ny, voxel / (nx * ny)]
@@ -61,25 +61,26 @@ impl Grid {
         DVec3::new(middle(0), middle(1), middle(2))
     }
 
-    /// The voxel along an axis that holds a coordinate; the outermost ones hold all beyond them.
+    /// The index along an axis of the voxel that contains a coordinate; the outermost ones include everything beyond.
     pub fn along(&self, axis: usize, at: f64) -> usize {
         let edges = &self.edges[axis];
         edges.partition_point(|edge| *edge <= at).clamp(1, edges.len() - 1) - 1
     }
 
-    /// Index of the voxel that holds a place; the outermost ones hold all beyond them.
+    /// Index of the voxel that contains a point; the outermost ones include everything beyond.
     pub fn holding(&self, place: DVec3) -> usize {
         self.column(place.x, place.y, self.along(2, place.z))
     }
 
-    /// Index of the voxel at a place seen from above, in the level `level`.
+    /// Index of the voxel at (x, y) in the level `level`.
     pub fn column(&self, x: f64, y: f64, level: usize) -> usize {
         let [_, nx, plane] = self.strides();
         self.along(0, x) + nx * self.along(1, y) + plane * level
     }
 }
 
-/// Edges about `size` apart from `low` to `high`, and growing apart outside, as far as `beyond` (mm) on either side.
+/// Edges about `size` apart from `low` to `high`, and increasingly far apart outside, up to `beyond` (mm) on either
+/// side.
 pub(super) fn graded([low, high]: [f64; 2], beyond: [f64; 2], size: f64) -> Vec<f64> {
     /// Each voxel outside is larger than its inner neighbour by this factor.
     const GROWTH: f64 = 1.5;
@@ -89,7 +90,7 @@ pub(super) fn graded([low, high]: [f64; 2], beyond: [f64; 2], size: f64) -> Vec<
         let mut outer = Vec::new();
         let (mut reach, mut step) = (0.0, size);
         while margin - reach > 1e-6 {
-            // What would be left is not a voxel of its own.
+            // A remainder that is not worth a voxel of its own.
             reach = if margin - reach < 1.5 * step { margin } else { reach + step };
             outer.push(reach);
             step *= GROWTH;

@@ -20,20 +20,20 @@ pub struct History {
     pub spacing: f64,
     /// Time of the build, s.
     pub seconds: f64,
-    /// Heat that arc and preheating brought, J.
+    /// Heat supplied by arc and preheating, J.
     pub supplied: f64,
-    /// Heat that surroundings and table took, J.
+    /// Heat lost to surroundings and table, J.
     pub lost: f64,
     /// Heat still in part and plate at the end, J.
     pub held: f64,
     /// Number of voxels.
     pub voxels: usize,
-    /// Their size seen from above, mm.
+    /// Voxel size seen from above, mm.
     pub voxel: f64,
 }
 
 impl History {
-    /// The hottest start of a pass: index of layer and pass, °C.
+    /// The hottest start of a pass: index of layer and pass, and its temperature, °C.
     pub fn hottest_start(&self) -> Option<(usize, usize, f64)> {
         let starts = self.layers.iter().enumerate().flat_map(|(layer, heat)| {
             heat.passes.iter().enumerate().map(move |(pass, heat)| (layer, pass, heat.start))
@@ -55,7 +55,7 @@ impl History {
         }
     }
 
-    /// The hottest metal that a pass meets ahead of the torch: index of layer and pass, °C.
+    /// The hottest metal ahead of the torch in any pass: index of layer and pass, and its temperature, °C.
     pub fn hottest_ahead(&self) -> Option<(usize, usize, f64)> {
         let ahead = self.layers.iter().enumerate().flat_map(|(layer, heat)| {
             heat.passes.iter().enumerate().map(move |(pass, heat)| (layer, pass, heat.peak().1))
@@ -63,13 +63,13 @@ impl History {
         ahead.max_by(|a, b| a.2.total_cmp(&b.2))
     }
 
-    /// Seconds for which the torch waits for metal to cool.
+    /// Time for which the torch waits for metal to cool, s.
     pub fn waits(&self) -> f64 {
         self.layers.iter().map(LayerHeat::wait).sum()
     }
 }
 
-/// What a part begins on, before the first of these layers; `None` if there is nothing to build.
+/// The state before the first of these layers; `None` if there is nothing to build.
 pub fn plate(layers: &[Layer], settings: &HeatSettings, weld: &WeldSettings) -> Option<Build> {
     let points = layers.iter().flat_map(|l| &l.passes).flat_map(|p| &p.points).map(|p| p.truncate());
     let outlines = layers.iter().flat_map(|l| &l.islands).flat_map(|i| i.outer.points()).copied();
@@ -77,13 +77,13 @@ pub fn plate(layers: &[Layer], settings: &HeatSettings, weld: &WeldSettings) -> 
     if !weld.is_level() || weld.charts.len() > 1 {
         return Some(Build::in_space(settings, weld, &sites(layers, &weld.charts, settings.bead_width / 2.0)));
     }
-    // Programs without outlines have the extent of their passes.
+    // Programs without outlines use the extent of their passes.
     let bounds = settings.over.or_else(|| Bounds::of(outlines)).or_else(|| Bounds::of(points))?;
     let tops: Vec<(f64, f64)> = layers.iter().map(|layer| (layer.z, layer.height)).collect();
     Some(Build::new(settings, weld, &bounds, &tops))
 }
 
-/// Where the bodies of these layers begin, whose beads reach so far beyond their middles, mm.
+/// The sites of the bodies of these layers; their beads extend `beyond` their centre-lines, mm.
 fn sites(layers: &[Layer], charts: &[Chart], beyond: f64) -> Vec<Option<Site>> {
     let site = |(body, chart): (usize, &Chart)| {
         let own = layers.iter().filter(|layer| layer.body.min(charts.len() - 1) == body);
@@ -92,10 +92,10 @@ fn sites(layers: &[Layer], charts: &[Chart], beyond: f64) -> Vec<Option<Site>> {
     charts.iter().enumerate().map(site).collect()
 }
 
-/// Chord tolerance, mm, and how far normals turn from place to place, rad.
+/// Chord tolerance, mm, and greatest turn of normals from point to point, rad.
 const FOLLOWED: (f64, f64) = (0.2, 0.3);
 
-/// Places along the passes of a layer, at its middle.
+/// Points in space along the passes of a layer, at its mid-height.
 fn places(layer: &Layer, chart: &Chart) -> Vec<DVec3> {
     let (middle, (tolerance, angle)) = (layer.middle(), FOLLOWED);
     let sheet = chart.sheet(middle);
@@ -105,8 +105,8 @@ fn places(layer: &Layer, chart: &Chart) -> Vec<DVec3> {
     starts.chain(along).map(|p| p.with_z(middle)).collect()
 }
 
-/// Builds all layers; within the limits of the settings if they have some, which changes waits, order and starts of the
-/// layers, and otherwise with the waits that they have. `None` if there is nothing to build.
+/// Builds all layers: within the limits of the settings, if there are any, which changes waits, order and starts of the
+/// passes; otherwise with the waits that they have. `None` if there is nothing to build.
 ///
 /// # Errors
 /// [`Cancelled`].

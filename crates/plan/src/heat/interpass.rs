@@ -1,4 +1,4 @@
-//! The limit of the temperature between passes: how long to wait, what to weld meanwhile, and at which end to begin.
+//! The limit of the temperature between passes: how long to wait, what to weld meanwhile, and where to begin.
 
 use super::build::{Build, LONGEST_WAIT, LayerHeat, NOISE};
 use super::frame::On;
@@ -8,27 +8,27 @@ use crate::pass::Pass;
 use glam::DVec3;
 use std::collections::VecDeque;
 
-/// Places on a closed pass at which it may begin instead.
+/// Points of a closed pass tried as its start.
 const STARTS: usize = 16;
 
 /// A pass that begins this close to the end of the last one continues its bead, mm.
 const GOES_ON_MM: f64 = 0.5;
 
-/// The first wait that is tried, s, and by how much the next ones are longer while the metal is too hot after them.
+/// The first wait tried, s, and the factor for the next ones while the metal is still too hot after them.
 const FIRST_WAIT: f64 = 16.0;
 const FURTHER: f64 = 1.5;
 
-/// What a pass is cut into is at least this long, in bead widths.
+/// Least length of the pieces into which a pass is cut, in bead widths.
 const SHORTEST: f64 = 4.0;
 
-/// A start must be cooler than the planned one by this to be taken instead, K.
+/// A start must be cooler than the planned one by this to replace it, K.
 const WORTH_MOVING: f64 = 2.0;
 
 impl Build {
-    /// Builds a layer within the limits of `[interpass]`: sets the waits of its passes and, where that saves waiting, their
-    /// order and starts. Without limits the same as [`Self::layer`].
+    /// Builds a layer within the limits of `[interpass]`: sets the waits of its passes and, if that saves waiting,
+    /// their order and starts. Without limits, the same as [`Self::layer`].
     pub fn layer_within_limits(&mut self, layer: &mut Layer) -> LayerHeat {
-        // A helix cannot wait along the way.
+        // A helix cannot pause along the way.
         let Some(limits) = self.limits().filter(|_| !layer.lit.is_turn()) else {
             return self.layer(layer);
         };
@@ -53,9 +53,9 @@ impl Build {
         LayerHeat { end: self.seconds(), ..heat }
     }
 
-    /// The queue whose first pass comes next: that of the current island while its metal is cool enough, or where a pass
-    /// continues from the `end` of the last one; then the first one in the planned order that is cool, then the one that waits
-    /// least. Its pass begins where it is coolest if it must wait.
+    /// The queue that comes next: that of the current island while its metal is cool enough, or if its pass continues
+    /// from the `end` of the last one; otherwise the first cool one in the planned order, or the one that waits least.
+    /// Its pass begins where it is coolest if it must wait.
     fn next(
         &self,
         on: On,
@@ -87,8 +87,8 @@ impl Build {
         queue
     }
 
-    /// Ends a pass where the metal ahead of the torch would be hotter than the limit, if that holds along passes; returns
-    /// the rest, which begins on the end of the bead. Both are long enough to be welded.
+    /// Ends a pass where the metal ahead of the torch would be hotter than the limit, if the limit applies along
+    /// passes; returns the rest, which begins on the end of the bead. Both are long enough to be welded.
     fn cut_where_hot(&self, on: On, pass: &mut Pass, limits: &Interpass) -> Option<Pass> {
         if !limits.along {
             return None;
@@ -109,16 +109,16 @@ impl Build {
         Some(rest)
     }
 
-    /// How many whole seconds to wait until the metal under the start of a pass is no hotter than `limit` °C when the torch
-    /// gets there; [`LONGEST_WAIT`] where it never cools so far.
+    /// The wait in whole seconds until the metal under the start of a pass is no hotter than `limit` °C when the torch
+    /// gets there; [`LONGEST_WAIT`] if it never cools that far.
     fn wait_for(&mut self, on: On, start: DVec3, limit: f64) -> f64 {
         let (at, ambient) = (start.truncate(), self.settings.heat.ambient);
-        // Metal as cool as this does not get too hot meanwhile.
+        // Metal this cool does not get too hot in the meantime.
         if self.surface(on, at) <= limit.midpoint(ambient) {
             return 0.0;
         }
         let (today, now) = (self.body.clone(), self.now);
-        // How much too hot the metal is after a wait, K.
+        // By how much the metal is too hot after a wait, K.
         let after = |build: &mut Self, wait: f64| {
             (build.now, build.pending) = (now, 0.0);
             build.body.clone_from(&today);
@@ -131,7 +131,7 @@ impl Build {
         wait
     }
 
-    /// Seconds from now until the torch is at a start, a wait before it included.
+    /// Seconds from now until the torch is at a start, including a wait before it.
     fn until(&self, wait: f64, start: DVec3) -> f64 {
         let mut torch = self.torch.clone();
         let pause = torch.wait(wait).map_or(0.0, |pause| pause.moving + pause.seconds);
@@ -149,7 +149,7 @@ enum Begin {
     Reversed,
 }
 
-/// Where a pass begins coolest, and the temperature there: anywhere on a closed one, at either end of an open one.
+/// The coolest start of a pass, and the temperature there, °C: anywhere on a closed pass, at either end of an open one.
 fn cooler(pass: &Pass, hot: impl Fn(DVec3) -> f64) -> (f64, Begin) {
     let planned = pass.start().map_or(f64::INFINITY, &hot);
     let other = if pass.closed {
@@ -162,7 +162,7 @@ fn cooler(pass: &Pass, hot: impl Fn(DVec3) -> f64) -> (f64, Begin) {
     other.filter(|(there, _)| *there < planned - WORTH_MOVING).unwrap_or((planned, Begin::AsPlanned))
 }
 
-/// The passes of each island in their order, islands in the order in which they were to begin.
+/// The passes of each island in their order, islands in the planned order.
 fn by_island(layer: &mut Layer) -> Vec<VecDeque<Pass>> {
     let mut queues: Vec<(Option<usize>, VecDeque<Pass>)> = Vec::new();
     for pass in layer.passes.drain(..) {
@@ -176,8 +176,8 @@ fn by_island(layer: &mut Layer) -> Vec<VecDeque<Pass>> {
     queues.into_iter().map(|(_, queue)| queue).collect()
 }
 
-/// The shortest wait in whole seconds after which the metal is no hotter than it may be, at most [`LONGEST_WAIT`].
-/// `after(wait)` says by how much it is hotter (K), `rise` (K) how far the limit lies above the surroundings.
+/// The shortest wait in whole seconds after which the metal is no hotter than allowed, at most [`LONGEST_WAIT`].
+/// `after(wait)` is how much hotter it is than that (K), `rise` (K) the limit above the surroundings.
 fn shortest(rise: f64, mut after: impl FnMut(f64) -> f64) -> f64 {
     let (mut short, mut long, mut guess) = (-1.0, f64::INFINITY, 0.0);
     while long - short > 1.0 && guess < LONGEST_WAIT {
@@ -187,7 +187,7 @@ fn shortest(rise: f64, mut after: impl FnMut(f64) -> f64) -> f64 {
         } else {
             long = guess;
         }
-        // Metal that cools freely loses about this much per second, or more.
+        // Freely cooling metal loses about this much per second, or more.
         let next = (guess + over * guess / rise.max(1.0)).round();
         guess = if next > short && next < long && long.is_finite() {
             next

@@ -1,15 +1,15 @@
-//! Heat: how warm the metal is before each pass, and the waits and the order that a limit needs.
+//! Heat: how warm the metal is before each pass, and the waits and the order that a temperature limit requires.
 //!
-//! A part is divided into voxels about a bead wide. They are born as the torch lays their metal, in the order of the
-//! program and in its time, and take the power of the arc; heat is conducted within part and plate, and lost to the air,
+//! A part is divided into voxels about one bead wide. They are added as the torch lays their metal, in the order and
+//! timing of the program, and take the power of the arc; heat is conducted within part and plate, and lost to the air,
 //! by radiation, and to the table (`docs/heat.md` has the equations, their limits and how they were checked).
 //!
 //! | file | what it does |
 //! | --- | --- |
 //! | `settings` | the sections `[material]`, `[substrate]`, `[heat]` and `[interpass]` |
 //! | `grid` | where the voxels lie |
-//! | `frame` | where layers lie among them, level or not |
-//! | `space` | builds whose layers are not level, and what their bodies begin on |
+//! | `frame` | position of layers among them, level or not |
+//! | `space` | builds whose layers are not level, and the metal that their bodies begin on |
 //! | `body` | their metal: what it holds, conducts and leaves bare |
 //! | `sweep` | one step in time |
 //! | `build` | the torch moves, metal is laid and heated; temperatures of passes and layers |

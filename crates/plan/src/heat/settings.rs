@@ -133,7 +133,7 @@ impl Interpass {
 pub struct HeatSettings {
     /// The part.
     pub material: Material,
-    /// Its density, g/cm³.
+    /// Density of the part, g/cm³.
     pub density: f64,
     /// The plate.
     pub substrate: Substrate,
@@ -145,10 +145,11 @@ pub struct HeatSettings {
     pub bead_area: f64,
     /// Width of the nominal bead, mm.
     pub bead_width: f64,
-    /// Whether each body begins on metal that is not welded; the first one does, and level ones stand on a plate.
+    /// For each body, whether it begins on metal that is not welded; the first always does, and level ones stand on a
+    /// plate.
     pub on_stock: Vec<bool>,
-    /// The box around the part seen from above, where voxels begin; `None` for that of the slices, which may lie a little
-    /// differently.
+    /// The box around the part seen from above, where voxels begin; `None` takes that of the slices, which may differ
+    /// slightly.
     pub over: Option<Bounds>,
 }
 

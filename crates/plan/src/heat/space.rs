@@ -11,27 +11,28 @@ use planar::Polygon;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// What is known of the surface of a build so far, mm².
+/// Surface areas of a build, mm².
 #[derive(Debug, Clone, Default)]
 pub(super) struct Skin {
-    /// Bare area of what its bodies begin on, as the voxels have it.
+    /// Bare area of the ground of its bodies, as represented by the voxels.
     stock: f64,
     /// Sides of all layers.
     sides: f64,
-    /// Of every body, its first and its last layer.
+    /// For every body, its first and its last layer's area.
     ends: BTreeMap<usize, [f64; 2]>,
 }
 
 impl Build {
-    /// The stock under bodies whose layers are not level, or of which there are several: `substrate.thickness` of metal under the
-    /// first layer of each that begins on a plate or on metal that is not welded, `substrate.margin` wider than it.
+    /// The metal under bodies whose layers are not level, or of which there are several: `substrate.thickness` thick
+    /// under the first layer of each that begins on a plate or on metal that is not welded, and `substrate.margin`
+    /// wider than it.
     pub fn in_space(settings: &HeatSettings, weld: &WeldSettings, sites: &[Option<Site>]) -> Self {
         let mut settings = settings.clone();
         let Substrate { thickness, margin, .. } = settings.substrate;
         let [welded, all] = Site::boxes(sites.iter().flatten(), thickness, margin);
         let beyond = settings.bead_width / 2.0;
         let edges = |axis: usize, voxel: f64| {
-            // On multiples of the voxel, so that a slightly different extent gives the same voxels.
+            // Aligned to multiples of the voxel, so that a slightly different extent gives the same voxels.
             let [low, high] = [welded[0][axis] - beyond, welded[1][axis] + beyond].map(|at| at / voxel);
             let within = [low.floor() * voxel, high.ceil() * voxel];
             graded(within, [within[0] - all[0][axis], all[1][axis] - within[1]], voxel)
@@ -54,11 +55,11 @@ impl Build {
         build
     }
 
-    /// Lays what a body begins on.
+    /// Adds the ground of a body.
     fn hold(&mut self, site: &Site) {
         let Substrate { thickness, margin, .. } = self.settings.substrate;
         let (grid, body) = (self.body.grid(), &self.body);
-        // The far side lies on the table; the heat that this takes is spread over the voxels within one voxel of it.
+        // The far side lies on the table; its contact is spread over the voxels within one voxel of it.
         let near = thickness.min(self.settings.voxel());
         let laid = |voxel: usize| {
             let (size, part) = (grid.size(voxel), |from, to| site.part(grid, voxel, [from, to], margin));
@@ -72,14 +73,15 @@ impl Build {
         self.body.hold(&metal, &far, self.settings.preheat());
     }
 
-    /// Compares the surface of what is welded in space with that of its voxels, after a layer with sides of this area, mm².
+    /// Updates the ratio of the true surface of what is welded in space to that of its voxels, after a layer with sides
+    /// of this area, mm².
     pub(super) fn compare_sides(&mut self, layer: &Layer, sides: f64) {
         let Skin { stock, sides: all, ends } = &mut self.skin;
         *all += sides;
         let area = layer.islands.iter().map(Polygon::area).sum();
         ends.entry(layer.body).or_insert([area, area])[1] = area;
         let [firsts, lasts] = [0, 1].map(|end| ends.values().map(|ends| ends[end]).sum::<f64>());
-        // What the first layers cover is bare no longer.
+        // What the first layers cover is no longer bare.
         let (surface, voxels) = (*all + lasts, self.body.bare_area - *stock + firsts);
         if sides > 0.0 && voxels > 0.0 {
             let ratio = (surface / voxels).clamp(0.25, 4.0);

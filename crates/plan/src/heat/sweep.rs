@@ -1,8 +1,8 @@
-//! One step in time: implicit along x, y and z in turn (locally one-dimensional scheme; Yanenko, The Method of Fractional
-//! Steps, 1971). Each sweep solves the lines of one axis exactly, so it is stable for steps of any length, makes no new
-//! hottest or coldest place, and keeps the heat except for what the bare faces lose in it. Every step is made in two halves, the
-//! second in the opposite order, which cancels most of the error of splitting, and no temperature depends on how many steps there
-//! were before.
+//! One step in time: implicit along x, y and z in turn (locally one-dimensional scheme; Yanenko, The Method of
+//! Fractional Steps, 1971). Each sweep solves the lines of one axis exactly, so it is stable for any step, creates no
+//! new extremes, and conserves heat except for what the bare faces lose in it. Every step consists of two halves, the
+//! second in the opposite order, which cancels most of the splitting error, and no temperature depends on how many
+//! steps came before.
 
 use super::body::{Air, Body, KELVIN, STEFAN_BOLTZMANN};
 use super::grid::Grid;
@@ -11,37 +11,37 @@ use rayon::prelude::*;
 /// Voxels along x in a tile: columns that are swept along z side by side.
 pub(super) const TILE: usize = 16;
 
-/// Tiles that are worth handing to a thread.
+/// Tiles worth handing to one thread.
 const TILES_A_TURN: usize = 8;
 
 /// Sweeps over fewer voxels are not worth a second thread.
 const WORTH_SHARING: usize = 16_000;
 
-/// No face radiates as if it were hotter than melting steel, K: what the arc and its pool lose is left out of the arc's
-/// efficiency already.
+/// Faces radiate at most as if they were at this temperature, that of melting steel, K: losses of the arc and its pool
+/// are already excluded by the arc efficiency.
 const HOTTEST: f64 = 1800.0;
 
-/// This many voxels around the torch, on all sides, take part in every step.
+/// Voxels this near to the torch, on all sides, take part in every step.
 const NEAR: usize = 5;
 
 /// Lines along x that are solved side by side.
 const LANES: usize = 8;
 
-/// The longest step of what the torch left behind, over the time since it was near.
+/// The longest step away from the torch, as a fraction of the time since it was near.
 const PART_OF_REST: f64 = 0.08;
 
-/// A level (swept along x and y) or a tile of columns (swept along z) that may take longer steps than the torch: the longer
-/// ago it was heated, the slower its temperatures change.
+/// A level (swept along x and y) or a tile of columns (swept along z) that may take longer steps than the torch: the
+/// longer ago it was heated, the slower its temperatures change.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lag {
-    /// Time by which it has not been advanced yet, s.
+    /// Time by which it has not yet been advanced, s.
     owed: f64,
     /// The body's clock when the torch was last near, s.
     heated: f64,
 }
 
 impl Lag {
-    /// The step to take when the body's clock has reached `now` after `seconds`; 0 where it is put off.
+    /// The step to take when the body's clock has advanced by `seconds` to `now`; 0 if it is put off.
     fn step(&mut self, seconds: f64, now: f64, patience: f64) -> f64 {
         self.owed += seconds;
         let longest = (PART_OF_REST * (now - self.heated)).min(patience);
@@ -63,13 +63,13 @@ pub(super) fn wake(body: &mut Body, voxel: usize) {
     }
 }
 
-/// How far every level and tile lags.
+/// The lag of every level and tile.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lags {
     pub(super) levels: Vec<Lag>,
     pub(super) tiles: Vec<Lag>,
-    /// The longest step, s: longer ones let too little heat turn the corner from wall to plate. 0 makes everything take part in
-    /// every step.
+    /// The longest step, s: longer ones let too little heat pass from the wall into the plate. With 0 everything takes
+    /// part in every step.
     pub(super) patience: f64,
 }
 
@@ -80,8 +80,8 @@ impl Lags {
     }
 }
 
-/// One step of `seconds`; returns the heat lost, J. Every sweep takes whole lines, so that none of them holds back the heat of
-/// another, however long its step.
+/// One step of `seconds`; returns the heat lost, J. Every sweep takes whole lines, so that none of them blocks the heat
+/// of another, however long its step.
 pub(super) fn step(body: &mut Body, seconds: f64) -> f64 {
     body.clock += seconds;
     let (now, patience) = (body.clock, body.lags.patience);
@@ -114,17 +114,17 @@ struct Row<'a> {
     bare: &'a [f64],
     /// Area on the table, mm²; empty above.
     table: &'a [f64],
-    /// True over computed bare area.
+    /// True over voxel bare area.
     scale: f64,
 }
 
 impl Row<'_> {
-    /// What the bare faces of every voxel lose, W/K.
+    /// Loss of the bare faces of every voxel, W/K.
     fn leaks(&self, air: &Air, leaks: &mut [f64]) {
         let cold = air.ambient + KELVIN;
         leaks[self.bare.len()..].fill(0.0);
         for ((leak, bare), theta) in leaks.iter_mut().zip(self.bare).zip(&*self.theta) {
-            // What radiates at most HOTTEST, over the whole rise.
+            // Radiation of at most [`HOTTEST`], over the whole temperature rise.
             let (hot, share) = ((cold + theta).min(HOTTEST), ((HOTTEST - cold) / theta.max(1e-9)).min(1.0));
             let radiated = air.emissivity * STEFAN_BOLTZMANN * (hot * hot + cold * cold) * (hot + cold);
             let film = air.convection + radiated * share;
@@ -139,8 +139,8 @@ impl Row<'_> {
     }
 }
 
-/// Heat stored per second and kelvin, W/K, `often` per second; an empty voxel stores something, so that it keeps its own
-/// temperature.
+/// Heat stored per second and kelvin, W/K, for `often` steps per second; an empty voxel stores a little, so that it
+/// keeps its own temperature.
 fn stored(capacity: f64, often: f64) -> f64 {
     if capacity > 0.0 { capacity * often } else { 1.0 }
 }
@@ -214,14 +214,15 @@ fn vertical(body: &mut Body, steps: &[f64]) -> f64 {
     }
 }
 
-/// Room for the values of a row.
+/// Buffers for the values of a row.
 #[derive(Default)]
 struct Scratch {
     leaks: Vec<f64>,
     ratios: Vec<[f64; LANES]>,
 }
 
-/// Solves the lines of a few rows side by side, since each waits for itself; returns the heat lost, J.
+/// Solves the lines of a few rows side by side, because each is a chain of dependent operations; returns the heat lost,
+/// J.
 fn along(rows: &mut [Row<'_>], air: &Air, seconds: f64, scratch: &mut Scratch) -> f64 {
     let (count, length) = (rows.len().min(LANES), rows.first().map_or(0, |row| row.theta.len()));
     let Scratch { leaks, ratios } = scratch;
@@ -259,13 +260,13 @@ fn along(rows: &mut [Row<'_>], air: &Air, seconds: f64, scratch: &mut Scratch) -
     rows.iter().zip(leaks.chunks(length)).map(|(row, leaks)| row.lost(leaks, seconds)).sum()
 }
 
-/// Solves the lines that cross rows lying one behind the other; returns the heat lost, J.
+/// Solves the lines that cross consecutive rows; returns the heat lost, J.
 fn between(rows: &mut [Row<'_>], air: &Air, seconds: f64) -> f64 {
     let width = rows.first().map_or(0, |row| row.theta.len());
     let mut leaks = vec![0.0; rows.len() * width];
     let mut ratios = vec![0.0; rows.len() * width];
     let often = 1.0 / seconds;
-    // For the row before the first.
+    // Stands for the row before the first.
     let none = vec![0.0; width];
     for n in 0..rows.len() {
         let (done, rest) = rows.split_at_mut(n);

@@ -1,8 +1,8 @@
-//! Beads by the heat of the metal below: fitted to measured walls, and used to predict others.
+//! Beads by the temperature of the metal below: fitted to measured walls, and used to predict others.
 //!
-//! With the same program, a wall that is left to cool between layers grows higher and thinner. The thickness and the width of a
-//! layer are assumed to be linear in the temperature of the metal just ahead of the torch:
-//! `layer = a + b · T`, `width = c + d · T`, fitted by least squares to whole walls.
+//! With the same program, a wall left to cool between layers grows higher and thinner. The thickness and the width of a
+//! layer are assumed to be linear in the temperature of the metal just ahead of the torch: `layer = a + b · T`,
+//! `width = c + d · T`, fitted by least squares to whole walls.
 
 use super::build::Build;
 use super::settings::HeatSettings;
@@ -38,13 +38,13 @@ pub struct MeasuredWall {
 /// A value that is linear in the temperature of the metal ahead of the torch.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct ByHeat {
-    /// At 0 °C, mm.
+    /// Value at 0 °C, mm.
     pub cold: f64,
     /// Change with temperature, mm/K.
     pub slope: f64,
 }
 
-/// How thickness and width of layers depend on heat.
+/// How thickness and width of layers depend on temperature.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct WallLaw {
     /// Thickness of a layer.
@@ -71,7 +71,7 @@ pub enum WallFitError {
     /// Too few walls.
     #[error("a law that depends on heat needs two walls or more that were welded with different waits.")]
     TooFew,
-    /// All equally warm.
+    /// All walls were equally warm.
     #[error("all walls are equally warm (within 10 °C): weld them with waits that differ more.")]
     Alike,
 }
@@ -115,8 +115,8 @@ impl WallLaw {
         Ok(Self { layer: fit(&layer)?, width: fit(&|w| w.width)? })
     }
 
-    /// The law for a profile whose bead has this width (mm): it holds at the temperature that gives that width. `None` if no
-    /// temperature of solid metal does.
+    /// The law for a profile whose bead has this width (mm), referred to the temperature that gives that width. `None`
+    /// if that is no temperature of solid metal.
     pub fn by_heat(&self, width: f64) -> Option<BeadByHeat> {
         /// Coldest and hottest metal that is welded onto, °C.
         const SOLID: (f64, f64) = (-50.0, 1500.0);
@@ -125,9 +125,9 @@ impl WallLaw {
         (SOLID.0..=SOLID.1).contains(&temperature).then_some(law)
     }
 
-    /// Predicts a wall. Its layers depend on its temperature and vice versa, so both are found in turn.
+    /// Predicts a wall. Its layers depend on its temperature and vice versa, so both are found by iteration.
     pub fn predict(&self, wall: &Wall, settings: &HeatSettings, weld: &WeldSettings) -> PredictedWall {
-        /// Turns; each brings the temperature closer by a factor of ten or more.
+        /// Iterations; each brings the temperature closer by a factor of ten or more.
         const TURNS: usize = 3;
         let mut mean = 300.0;
         for _ in 0..TURNS {

@@ -33,12 +33,12 @@ impl Default for Colony {
     }
 }
 
-/// What the ants of one round walked, mm (figure 4 of the paper).
+/// Tours of the ants of one round, mm (figure 4 of the paper).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Round {
     /// Mean length of the tours of this round.
     pub mean: f64,
-    /// The shortest tour so far; before the first round that of the improved nearest neighbour.
+    /// The shortest tour so far; before the first round, that of the improved nearest neighbour.
     pub shortest: f64,
 }
 
@@ -56,7 +56,7 @@ pub fn convergence(stops: &[Stop], colony: &Colony) -> Vec<Round> {
     search(stops, colony).1
 }
 
-/// The best closed tour, and what was walked in each round.
+/// The best closed tour, and the tour lengths of each round.
 fn search(stops: &[Stop], colony: &Colony) -> (Vec<Visit>, Vec<Round>) {
     let start = nearest::improved(stops, Ends::Closed);
     let n = start.len();

@@ -1,11 +1,11 @@
-//! Passes run the other way on every second layer, so that the low ends of beads lie over the high starts below them.
+//! Reverses passes on every second layer, so that the low ends of beads lie over the high starts below them.
 
 use super::OrderSettings;
 use crate::fill::{Fill, Path};
 
-/// Turns open passes, where allowed, so that they begin at their left end on even layers and at their right end on odd
-/// ones, and fixes that direction. Ordering alone cannot do this: it would lay the same line the shortest way on every
-/// layer.
+/// Reverses open passes, where allowed, so that they begin at their left end on even layers and at their right end on
+/// odd ones, and fixes that direction. Ordering alone cannot do this: it would lay the same line the shortest way on
+/// every layer.
 pub(super) fn settle_open(islands: &mut [Fill], settings: &OrderSettings) {
     if !settings.alternate {
         return;
@@ -21,8 +21,8 @@ pub(super) fn settle_open(islands: &mut [Fill], settings: &OrderSettings) {
     }
 }
 
-/// Reverses closed passes on odd layers; their starts stay where they were. Must be done last, since seams that move
-/// are measured along the path as the strategy laid it.
+/// Reverses closed passes on odd layers; their starts stay in place. Must be done last, since moving seams are measured
+/// along the path as the strategy laid it.
 pub(super) fn turn_closed(passes: &mut [Path], settings: &OrderSettings) {
     if !settings.alternate || settings.layer.is_multiple_of(2) {
         return;

@@ -2,10 +2,10 @@
 
 use super::tour::{Ends, Gate, Stop, Visit};
 
-/// More stops take too long: time and memory grow with 2ⁿ.
+/// Most stops: time and memory grow with 2ⁿ.
 pub const MAX_STOPS: usize = 9;
 
-/// The optimum, for at most [`MAX_STOPS`] stops; starts of closed passes lie on their gates.
+/// The optimum, for at most [`MAX_STOPS`] stops; closed passes start at one of their gates.
 ///
 /// ```
 /// use bead_plan::order::exact;
@@ -38,7 +38,7 @@ pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     found.map(|(_, tour)| tour).unwrap_or_default()
 }
 
-/// The shortest path through all stops, given the length of the path in and of the path out.
+/// The shortest path through all stops, including the lengths of the paths in and out.
 fn shortest(
     gates: &[Vec<Gate>],
     way_in: impl Fn(&Gate) -> Option<f64>,

@@ -1,9 +1,9 @@
 //! Local search over order, directions and start points together.
 //!
-//! From the nearest-next tour, three moves are tried between stops that lie near each other, until none shortens the
-//! travel: reverse a stretch of the tour (2-opt), move one to three stops elsewhere, reversed if that is better
-//! (Or-opt; a single stop takes its best gate there), and enter a stop by another gate. Then stretches of the tour are
-//! exchanged, all of them where there are few stops, else at random, and the tour is repaired; exchanges that do not
+//! From the nearest-next tour, three moves are tried between stops that are near each other, until none shortens the
+//! travel: reverse a section of the tour (2-opt), move one to three stops elsewhere, reversed if that is better
+//! (Or-opt; a single stop takes its best gate there), and enter a stop by another gate. Then sections of the tour are
+//! exchanged, all of them if there are few stops, otherwise at random, and the tour is repaired; exchanges that do not
 //! shorten it are undone. Finally the starts of closed passes slide along their edges.
 
 use super::nearest;
@@ -13,15 +13,15 @@ use glam::DVec2;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-/// Moves are tried with this many of the nearest stops.
+/// Number of nearest stops with which moves are tried.
 const NEAR: usize = 8;
 
-/// With this few stops every exchange is tried; with more, this many random ones per stop, up to a limit.
+/// With at most this many stops every exchange is tried; with more, this many random ones per stop, up to a limit.
 const FEW_STOPS: usize = 9;
 const KICKS_PER_STOP: usize = 3;
 const MOST_KICKS: usize = 800;
 
-/// A stretch that is exchanged has at most this many stops.
+/// Most stops in a section that is exchanged.
 const KICK_LENGTH: usize = 12;
 
 /// Gains smaller than this do not count, mm.
@@ -49,10 +49,9 @@ struct Search<'a> {
     circles: Vec<Circle>,
     ends: Ends,
     tour: Vec<Visit>,
-    /// Place of each stop on the tour.
+    /// Index of each stop on the tour.
     place: Vec<usize>,
-    /// The stops that lie nearest to each, all of them where there are few, with a lower bound of the distance between their
-    /// gates.
+    /// The nearest stops of each stop (all if there are few), with a lower bound of the distance between their gates.
     near: Vec<Vec<(f64, usize)>>,
     all_reversible: bool,
 }
@@ -83,7 +82,7 @@ impl<'a> Search<'a> {
         neighbours(&self.tour, i, self.ends).1
     }
 
-    /// The gate of a stop with the shortest path from a point, through the stop, to another point.
+    /// The gate of a stop with the shortest path from `from` through the stop to `to`.
     fn best_gate(&self, stop: usize, from: Option<DVec2>, to: Option<DVec2>) -> Gate {
         let mut best = (f64::INFINITY, self.gates[stop][0]);
         for gate in &self.gates[stop] {
@@ -95,12 +94,12 @@ impl<'a> Search<'a> {
         best.1
     }
 
-    /// Whether place `j` comes right after place `i`.
+    /// Whether index `j` of the tour directly follows index `i`.
     fn follows(&self, i: usize, j: usize) -> bool {
         i + 1 == j || (self.ends == Ends::Closed && i + 1 == self.tour.len() && j == 0)
     }
 
-    /// Tries moves around the stops of the queue until it is empty; returns what was gained, mm.
+    /// Tries moves around the stops of the queue until it is empty; returns the gain, mm.
     fn improve(&mut self, queue: &mut Vec<usize>) -> f64 {
         let mut waiting = vec![false; self.stops.len()];
         queue.iter().for_each(|&s| waiting[s] = true);
@@ -119,7 +118,8 @@ impl<'a> Search<'a> {
         gained
     }
 
-    /// The first move around a stop that shortens the tour, done: its gain and the stops whose neighbours changed.
+    /// Makes the first move around a stop that shortens the tour; returns its gain, mm, and the stops whose neighbours
+    /// changed.
     fn improve_at(&mut self, stop: usize) -> Option<(f64, Vec<usize>)> {
         if let Some(gain) = self.other_gate(self.place[stop]) {
             return Some((gain, self.around([self.place[stop]])));
@@ -150,7 +150,7 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// The stops at some places and next to them.
+    /// The stops at some indices of the tour and next to them.
     fn around<const N: usize>(&self, places: [usize; N]) -> Vec<usize> {
         let last = self.tour.len() - 1;
         let beside = places.into_iter().flat_map(|i| [i.saturating_sub(1), i, (i + 1).min(last)]);
@@ -172,7 +172,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Runs the places i to j backwards if that is shorter.
+    /// Reverses the section from index i to j if that is shorter; returns the gain, mm.
     fn reverse(&mut self, i: usize, j: usize) -> Option<f64> {
         if i > j || (i == 0 && j + 1 == self.tour.len() && self.ends == Ends::Closed) {
             return None;
@@ -199,7 +199,7 @@ impl<'a> Search<'a> {
         self.number(i, j + 1);
     }
 
-    /// How much shorter the tour is without the `length` stops from place `i` on, mm.
+    /// How much shorter the tour is without the `length` stops from index `i` on, mm.
     fn freed(&self, i: usize, length: usize) -> f64 {
         let (n, j) = (self.tour.len(), i + length - 1);
         if j >= n || length >= n {
@@ -209,7 +209,7 @@ impl<'a> Search<'a> {
         gap(before, Some(self.tour[i].enter)) + gap(Some(self.tour[j].leave), after) - gap(before, after)
     }
 
-    /// Moves the `length` stops from place `i` on to before or after the stop at place `to`, if that shortens the tour.
+    /// Moves the `length` stops from index `i` on to before or after the stop at index `to`, if that shortens the tour.
     fn relocate(&mut self, i: usize, length: usize, to: usize, freed: f64) -> Option<(f64, Vec<usize>)> {
         let j = i + length - 1;
         if (i..=j).contains(&to) {
@@ -217,7 +217,7 @@ impl<'a> Search<'a> {
         }
         let (before, after) = (self.before(i), self.after(j));
         for behind in [true, false] {
-            // The edge into which the stretch goes, with the stretch gone.
+            // The travel into which the section is inserted, after its removal.
             let (from, into) = if behind {
                 let next = if self.follows(to, i) { after } else { self.after(to) };
                 (Some(self.tour[to].leave), next)
@@ -225,7 +225,7 @@ impl<'a> Search<'a> {
                 let previous = if self.follows(j, to) { before } else { self.before(to) };
                 (previous, Some(self.tour[to].enter))
             };
-            // Most stops lie too far off, whichever gate is used.
+            // Most stops are too far away, whichever gate is used.
             let least = if i == j { self.circles[self.tour[i].stop].least_way(from, into) } else { 0.0 };
             if freed - (least - gap(from, into)) <= LEAST_GAIN {
                 continue;
@@ -241,7 +241,7 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// How a stretch is best entered and left between two points, and whether it is then reversed.
+    /// The gates by which a section between two points is best entered and left, and whether it is then reversed.
     fn best_stretch(&self, i: usize, j: usize, from: Option<DVec2>, into: Option<DVec2>) -> (Gate, bool) {
         if i == j {
             return (self.best_gate(self.tour[i].stop, from, into), false);
@@ -274,7 +274,7 @@ impl<'a> Search<'a> {
         self.around([i.min(last), j.min(last), place, place + length - 1])
     }
 
-    /// Exchanges neighbouring stretches, repairs the tour at their ends, and undoes what does not shorten it.
+    /// Exchanges neighbouring sections, repairs the tour at their ends, and undoes what does not shorten it.
     fn kick(&mut self) {
         let n = self.tour.len();
         let mut kept = (self.tour.clone(), self.place.clone());
@@ -292,7 +292,8 @@ impl<'a> Search<'a> {
         while all().fold(false, |gained, (a, b, c)| gained | self.exchange(a, b, c, &mut kept)) {}
     }
 
-    /// Exchanges the stretches a..b and b..c of a tour that is kept if that does not shorten it, and returns whether it did.
+    /// Exchanges the sections a..b and b..c; restores the `kept` tour if that does not shorten it. Returns whether it
+    /// did.
     fn exchange(&mut self, a: usize, b: usize, c: usize, kept: &mut (Vec<Visit>, Vec<usize>)) -> bool {
         let old = self.cost_of_kick(a, b, c);
         self.tour[a..c].rotate_left(b - a);
@@ -312,16 +313,16 @@ impl<'a> Search<'a> {
         shorter
     }
 
-    /// Length of the travels at the three ends of the stretches a..b and b..c.
+    /// Length of the travels at the three ends of the sections a..b and b..c, mm.
     fn cost_of_kick(&self, a: usize, b: usize, c: usize) -> f64 {
         let into = |i: usize| gap(self.before(i), Some(self.tour[i].enter));
         let out = gap(Some(self.tour[c - 1].leave), self.after(c - 1));
-        // A closed tour exchanged as a whole has one end twice.
+        // A closed tour exchanged as a whole has the same end twice.
         let whole = a == 0 && c == self.tour.len() && self.ends == Ends::Closed;
         into(a) + into(b) + if whole { 0.0 } else { out }
     }
 
-    /// The best gates for the order as it is, by dynamic programming; those of a closed tour in two halves.
+    /// Chooses the best gates for the current order by dynamic programming; for a closed tour in two halves.
     fn choose_gates(&mut self) {
         let n = self.tour.len();
         if n < 2 {
@@ -364,7 +365,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Starts of closed passes move along their edges, one after another, until they settle.
+    /// Moves the starts of closed passes along their edges, one after another, until they settle.
     fn slide_starts(&mut self) {
         const MOST_ROUNDS: usize = 20;
         for _ in 0..MOST_ROUNDS {
@@ -386,12 +387,12 @@ impl<'a> Search<'a> {
     }
 }
 
-/// No path through a stop that is left where it is entered is shorter than the straight one past it, mm.
+/// The straight distance past a stop, mm: no path through a stop that is left where it is entered is shorter.
 fn straight(before: Option<DVec2>, after: Option<DVec2>, visit: &Visit) -> f64 {
     if visit.enter == visit.leave { gap(before, after) } else { 0.0 }
 }
 
-/// For each of a few stops all others, with a lower bound of the distance between their gates.
+/// For each of a few stops all others, with a lower bound of the distance between their gates, mm.
 fn all_near(circles: &[Circle]) -> Vec<Vec<(f64, usize)>> {
     let of = |s: usize| {
         let others = (0..circles.len()).filter(|&other| other != s);
@@ -402,11 +403,12 @@ fn all_near(circles: &[Circle]) -> Vec<Vec<(f64, usize)>> {
     (0..circles.len()).map(of).collect()
 }
 
-/// For each stop the stops whose gates lie nearest to its own, with the distance.
+/// For each stop the stops whose gates are nearest to its own, with the distance, mm.
 fn near(stops: &[Stop]) -> Vec<Vec<(f64, usize)>> {
-    /// The gates of the stop itself come first; at most this many gates around each are examined.
+    /// The gates of the stop itself come first; at most this many gates around each one are examined.
     const MOST_LOOKED_AT: usize = 64;
-    /// Gates of a ring lie close together: about this many of them, all around it, find its neighbours.
+    /// Gates of a ring are close together: about this many of them, spread all around it, suffice to find its
+    /// neighbours.
     const ASKED: usize = 16;
     let points = |s: usize| stops[s].gates().map(|g| [g.enter.x, g.enter.y]);
     let all = (0..stops.len()).flat_map(|s| points(s).map(move |p| GeomWithData::new(p, s)));

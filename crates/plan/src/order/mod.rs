@@ -1,9 +1,9 @@
 //! Order: in which sequence the passes of a layer are laid, and where each begins.
 //!
-//! Islands are finished one after another, the stages of an island in their order. Within a stage, and among the
-//! islands, the order and the start points are chosen together so that the torch travels little: a travelling
-//! salesman who may enter every town at any of its gates. An open pass has two gates; a closed one may begin at any
-//! point, even in the middle of an edge.
+//! Islands are finished one after another, and the stages of an island in their order. Within a stage, and among the
+//! islands, the order and the start points are chosen together so that the torch travels little: a travelling salesman
+//! who may enter every town by any of its gates. An open pass has two gates; a closed one may begin at any point, even
+//! in the middle of an edge.
 //!
 //! | file | what it does |
 //! | --- | --- |
@@ -125,7 +125,8 @@ impl OrderSettings {
     }
 }
 
-/// Puts the passes of a layer in order. `torch` is where the torch is before and after (`None`: the origin).
+/// Puts the passes of a layer in order. `torch` is the torch's position, mm (`None`:
+/// the origin), updated to where the last pass ends.
 ///
 /// ```
 /// use bead_plan::fill::{Fill, Path};
@@ -178,8 +179,8 @@ struct Known {
 const REMEMBERED: usize = 6;
 
 impl Memory {
-    /// [`order`], with starts of closed passes moved off those of the layers below; `shared` says that other layers have the same
-    /// passes.
+    /// [`order`], with starts of closed passes moved away from those of the layers below; `shared` says that other
+    /// layers have the same passes.
     pub fn order(
         &mut self,
         islands: Vec<Fill>,
@@ -247,7 +248,7 @@ fn begin_at_seam(pass: Path, settings: &OrderSettings) -> Path {
     }
 }
 
-/// The pass, starting at the given point of it.
+/// The pass, starting at the given point on it.
 pub fn begin_at(mut pass: Path, start: DVec2) -> Path {
     if pass.closed {
         let index = vertex_at(&mut pass, start);
@@ -260,7 +261,7 @@ pub fn begin_at(mut pass: Path, start: DVec2) -> Path {
     pass
 }
 
-/// Index of the vertex of a closed pass at a point of its path; a new one where there is none yet.
+/// Index of the vertex of a closed pass at a point of its path; inserted if there is none yet.
 fn vertex_at(pass: &mut Path, point: DVec2) -> usize {
     let path = pass.path();
     let distance = |(a, b): (DVec2, DVec2)| tour::nearest_on(a, b, point).distance_squared(point);
@@ -280,7 +281,7 @@ fn vertex_at(pass: &mut Path, point: DVec2) -> usize {
 /// A start nearer to a vertex than this is that vertex, mm.
 const SAME_POINT_MM: f64 = 1e-3;
 
-/// Where the torch is after a pass.
+/// Position of the torch after a pass.
 fn last_point(pass: &Path) -> Option<DVec2> {
     if pass.closed { pass.points.first().copied() } else { pass.points.last().copied() }
 }

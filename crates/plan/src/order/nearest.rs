@@ -3,7 +3,7 @@
 use super::tour::{self, Circle, Ends, Gate, Stop, Visit, gap};
 use glam::DVec2;
 
-/// Always the stop with the nearest gate next.
+/// The tour that always goes to the stop with the nearest gate.
 pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     let from = match ends {
         Ends::From(start) => Some(start),
@@ -16,9 +16,9 @@ pub fn tour(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     tour
 }
 
-/// Walks from every gate of every stop, always on to the nearest gate of a stop not yet visited, and keeps the shortest
-/// of these closed tours. A curved ring begins where the line from its middle (its pseudo-vertex) to the previous place
-/// meets it.
+/// Starts at every gate of every stop, always goes on to the nearest gate of a stop not yet visited, and keeps the
+/// shortest of these closed tours. A curved ring begins where the line from its middle (its pseudo-vertex) to the
+/// previous point meets it.
 pub fn improved(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     let curves: Vec<Option<DVec2>> = stops.iter().map(pseudo_vertex).collect();
     let circles: Vec<Circle> = stops.iter().map(Circle::around).collect();
@@ -48,7 +48,7 @@ pub fn improved(stops: &[Stop], ends: Ends) -> Vec<Visit> {
     }
 }
 
-/// A closed tour begun at the visit nearest to a point.
+/// A closed tour, opened at the visit nearest to a point.
 pub(super) fn opened(mut tour: Vec<Visit>, start: DVec2) -> Vec<Visit> {
     let distance = |v: &Visit| v.enter.distance_squared(start);
     let first = (0..tour.len()).min_by(|&i, &j| distance(&tour[i]).total_cmp(&distance(&tour[j])));
@@ -64,7 +64,7 @@ fn pseudo_vertex(stop: &Stop) -> Option<DVec2> {
     }
 }
 
-/// Where the line from the pseudo-vertex to the previous place meets the ring.
+/// Where the line from the pseudo-vertex to the previous point meets the ring.
 fn meeting(stop: &Stop, middle: DVec2, before: DVec2) -> Gate {
     let Stop::Ring { path, .. } = stop else { return stop.best_gate(Some(before), None) };
     let way = before - middle;
@@ -79,7 +79,7 @@ fn meeting(stop: &Stop, middle: DVec2, before: DVec2) -> Gate {
     nearest.map_or_else(|| stop.best_gate(Some(before), None), |p| Gate { enter: p, leave: p })
 }
 
-/// Walks from gate to nearest gate until no stop is left. Stops whose circle lies farther off than the nearest gate so far
+/// Goes from gate to nearest gate until no stop is left. Stops whose circle is farther away than the nearest gate found
 /// are skipped.
 fn walk(
     left: &mut Vec<usize>,

@@ -1,4 +1,4 @@
-//! Closed passes begin next to the starts of the layers below, not above them, where humps would grow into a tower.
+//! Moves the starts of closed passes beside those of the layers below, so that humps do not grow into a tower.
 
 use super::{OrderSettings, Seam, begin_at};
 use crate::fill::Path;
@@ -11,19 +11,19 @@ use std::collections::VecDeque;
 const LAYERS: usize = 5;
 /// Least distance between starts, in bead widths.
 const APART: f64 = 0.5;
-/// Places tried per bead width.
+/// Positions tried per bead width.
 const PLACES: f64 = 10.0;
 
-/// Where the last layers begin, the lowest first.
+/// The starts of the last layers, the lowest first.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Seams(VecDeque<Starts>);
 
-/// The starts of a layer, by square.
+/// The starts of a layer, binned in squares.
 type Starts = FxHashMap<IVec2, Vec<DVec2>>;
 
 impl Seams {
-    /// Moves the starts of closed passes by the shortest distance off those of the layers below, unless seams are to be aligned,
-    /// and remembers them for the layers above. A pass without such a place begins where it did.
+    /// Moves the starts of closed passes by the shortest distance away from those of the layers below, unless seams are
+    /// to be aligned, and remembers them for the layers above. A pass without such a position keeps its start.
     pub(super) fn settle(&mut self, passes: Vec<Path>, settings: &OrderSettings) -> Vec<Path> {
         if settings.seam == Seam::Aligned || settings.bead_width <= 0.0 {
             return passes;
@@ -45,7 +45,7 @@ impl Seams {
         passes
     }
 
-    /// A better place for a closed pass to begin; `None` where it begins well, or no place is better.
+    /// A better start for a closed pass; `None` if its start is good, or no other is better.
     fn free_place(&self, pass: &Path, width: f64) -> Option<DVec2> {
         let start = *pass.points.first().filter(|_| pass.closed)?;
         if self.is_free(start, APART * width) {

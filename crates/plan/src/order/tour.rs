@@ -4,8 +4,8 @@ use crate::fill::Path;
 use glam::DVec2;
 use planar::Bounds;
 
-/// The search lets a closed pass begin at no more than this many of its vertices; in the end its start moves along the
-/// whole path.
+/// Most vertices of a closed pass considered as its start by the search; in the end its start may move along the whole
+/// path.
 const MOST_GATES: usize = 48;
 
 /// Where a stop is entered and left.
@@ -28,7 +28,7 @@ impl Gate {
     }
 }
 
-/// A pass as the order sees it.
+/// A pass as seen by the ordering.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stop {
     /// Entered and left at the same point.
@@ -59,12 +59,12 @@ pub struct Visit {
 }
 
 impl Visit {
-    /// A stop by one of its gates.
+    /// A visit to a stop by one of its gates.
     pub fn new(stop: usize, gate: Gate) -> Self {
         Self { stop, enter: gate.enter, leave: gate.leave }
     }
 
-    /// The same stop, run through the other way.
+    /// The same stop, traversed in reverse.
     pub fn flipped(self) -> Self {
         Self { stop: self.stop, enter: self.leave, leave: self.enter }
     }
@@ -100,7 +100,7 @@ impl Stop {
         Self::Ring { gates: thinned(&points.into_iter().collect::<Vec<_>>()), path: Vec::new() }
     }
 
-    /// The gates among which a search may choose.
+    /// The gates from which a search may choose.
     pub fn gates(&self) -> impl Iterator<Item = Gate> + '_ {
         let (points, ways): (&[DVec2], [Option<Gate>; 2]) = match self {
             Self::Ring { gates, .. } => (gates, [None, None]),
@@ -109,18 +109,18 @@ impl Stop {
         points.iter().map(|&p| Gate::at(p)).chain(ways.into_iter().flatten())
     }
 
-    /// Whether it may be run through the other way.
+    /// Whether it may be traversed in reverse.
     pub fn reversible(&self) -> bool {
         matches!(self, Self::Ring { .. } | Self::Line { reversible: true, .. })
     }
 
-    /// The gate with the shortest path from a point, through the stop, to another point.
+    /// The gate with the shortest path from `from` through the stop to `to`.
     pub fn best_gate(&self, from: Option<DVec2>, to: Option<DVec2>) -> Gate {
         let way = |gate: &Gate| gap(from, Some(gate.enter)) + gap(Some(gate.leave), to);
         self.gates().min_by(|a, b| way(a).total_cmp(&way(b))).unwrap_or(Gate::at(DVec2::ZERO))
     }
 
-    /// [`best_gate`](Self::best_gate), with the start of a closed path anywhere on it.
+    /// [`best_gate`](Self::best_gate), but with the start of a closed path anywhere on it.
     pub fn best_start(&self, from: Option<DVec2>, to: Option<DVec2>) -> Gate {
         let vertex = self.best_gate(from, to);
         let Self::Ring { path, .. } = self else { return vertex };
@@ -145,22 +145,22 @@ impl Circle {
         let path: &[DVec2] = if let Stop::Ring { path, .. } = stop { path } else { &[] };
         let places = || stop.gates().flat_map(|gate| [gate.enter, gate.leave]).chain(path.iter().copied());
         let middle = Bounds::of(places()).map(|bounds| bounds.center()).unwrap_or_default();
-        // Larger by what rounding may take away.
+        // Enlarged to allow for rounding.
         let radius = places().map(|p| p.distance(middle)).fold(0.0, f64::max) + 1e-9 * (1.0 + middle.length());
         Self { middle, radius }
     }
 
-    /// Any gate lies at least this far from a point, mm.
+    /// Lower bound of the distance of any gate from a point, mm.
     pub(super) fn least_gap(&self, from: Option<DVec2>) -> f64 {
         (gap(from, Some(self.middle)) - self.radius).max(0.0)
     }
 
-    /// Any gates of two stops lie at least this far from each other, mm.
+    /// Lower bound of the distance between any gates of two stops, mm.
     pub(super) fn least_distance(&self, other: &Self) -> f64 {
         (self.middle.distance(other.middle) - self.radius - other.radius).max(0.0)
     }
 
-    /// A path through any gate is at least this long, mm.
+    /// Lower bound of the length of a path through any gate, mm.
     pub(super) fn least_way(&self, from: Option<DVec2>, to: Option<DVec2>) -> f64 {
         self.least_gap(from) + self.least_gap(to)
     }
@@ -175,7 +175,7 @@ fn thinned(path: &[DVec2]) -> Vec<DVec2> {
     (0..MOST_GATES).map(|k| path[(k as f64 * count / MOST_GATES as f64) as usize]).collect()
 }
 
-/// Distance between two places, mm; 0 where either is free.
+/// Distance between two points, mm; 0 if either is free.
 #[inline]
 pub fn gap(from: Option<DVec2>, to: Option<DVec2>) -> f64 {
     match (from, to) {
@@ -191,7 +191,8 @@ pub fn nearest_on(a: DVec2, b: DVec2, point: DVec2) -> DVec2 {
     a.lerp(b, t.clamp(0.0, 1.0))
 }
 
-/// The point of the edge from `a` to `b` through which the path from `from` to `to` is shortest: like light at a mirror.
+/// The point of the edge from `a` to `b` through which the path from `from` to `to` is shortest (as light reflected by
+/// a mirror).
 fn turning_point(a: DVec2, b: DVec2, from: DVec2, to: DVec2) -> DVec2 {
     let length = a.distance(b);
     if length == 0.0 {
@@ -205,7 +206,7 @@ fn turning_point(a: DVec2, b: DVec2, from: DVec2, to: DVec2) -> DVec2 {
     a + along * t.clamp(0.0, length)
 }
 
-/// Length of all travels of a tour, mm.
+/// Total length of the travels of a tour, mm.
 pub fn length(tour: &[Visit], ends: Ends) -> f64 {
     let between: f64 = tour.windows(2).map(|w| w[0].leave.distance(w[1].enter)).sum();
     let (Some(first), Some(last)) = (tour.first(), tour.last()) else { return 0.0 };
@@ -215,7 +216,7 @@ pub fn length(tour: &[Visit], ends: Ends) -> f64 {
     }
 }
 
-/// Where the visit before the one at `index` leaves, and where the next one is entered.
+/// Where the visit before the one at `index` leaves, and where the one after it enters.
 pub fn neighbours(tour: &[Visit], index: usize, ends: Ends) -> (Option<DVec2>, Option<DVec2>) {
     let alone = tour.len() < 2;
     let (first, last) = (tour.first().map(|v| v.enter), tour.last().map(|v| v.leave));

@@ -1,4 +1,4 @@
-//! How much metal lies over the faces of a part in its preform: what a milling program is made from.
+//! The metal over the faces of a part in its preform: the basis of a milling program.
 
 use super::{Plate, Preform};
 use bead_part::model::{Mesh, NO_NEIGHBOUR};
@@ -11,30 +11,30 @@ use serde::Serialize;
 /// A face of the part: triangles that meet without a sharp edge.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Face {
-    /// mm²
+    /// Area, mm².
     pub area: f64,
     /// The middle of its largest triangle, mm; z = 0 is the top of the plate.
     pub place: DVec3,
     /// Unit normal there, outwards.
     pub normal: DVec3,
-    /// Metal over it along its normals: the least, the mean over its area, and the most, mm.
+    /// Metal over it along its normals, mm: least, mean over its area, and greatest.
     pub stock: [f64; 3],
 }
 
-/// Triangles that meet at a smaller angle than this are one face: 20°.
+/// Triangles that meet at a smaller angle than this belong to one face: cosine of 20°.
 const SMOOTH: f64 = 0.94;
-/// Metal is probed at this distance, as part of a step, then to [`TOLERANCE`] mm.
+/// Metal is probed in increments of this fraction of a step, then to [`TOLERANCE`] mm.
 const PROBE: f64 = 0.25;
 const TOLERANCE: f64 = 1e-3;
 
-/// Metal over each triangle of a part that lies in its preform, along its normal from its middle, mm. Below a saw's cut there is
-/// none; a plate that is kept counts as far as the preform stands on it.
+/// Metal over each triangle of a part in its preform, along its normal from its middle, mm. There is none below the
+/// saw's cut; a plate that is kept counts as far as the preform stands on it.
 pub fn stock(part: &Mesh, preform: &Preform, plate: Plate) -> Vec<f64> {
     let floor = match plate {
         Plate::Sawn { cut } => cut,
         Plate::Kept { thickness } => -thickness,
     };
-    // Each step is asked about many points.
+    // Each step is queried for many points.
     let steps: Vec<(Boxes, usize)> = preform.steps.par_iter().map(edges).collect();
     let is_metal = |p: DVec3| {
         let step = steps.get((p.z.max(0.0) / preform.step) as usize);
@@ -93,7 +93,7 @@ pub fn faces(part: &Mesh, stock: &[f64]) -> Vec<Face> {
     faces
 }
 
-/// Some triangles as one face; none without an area.
+/// Some triangles as one face; `None` without an area.
 fn summed(part: &Mesh, triangles: &[usize], stock: &[f64]) -> Option<Face> {
     let area = |&triangle: &usize| {
         let [a, b, c] = corners(part, &part.triangles[triangle]);
@@ -112,7 +112,7 @@ fn corners(part: &Mesh, triangle: &[u32; 3]) -> [DVec3; 3] {
     triangle.map(|corner| part.vertices[corner as usize])
 }
 
-/// Middle of a triangle, mm, and its unit normal; zero for one without an area.
+/// Middle of a triangle, mm, and its unit normal; zero for a triangle without an area.
 fn middle_and_normal(part: &Mesh, triangle: &[u32; 3]) -> (DVec3, DVec3) {
     let [a, b, c] = corners(part, triangle);
     ((a + b + c) / 3.0, (b - a).cross(c - a).normalize_or_zero())

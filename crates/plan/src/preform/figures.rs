@@ -1,4 +1,4 @@
-//! What a preform weighs, takes and costs, beside a block of the same material.
+//! Weight, time and cost of a preform, compared with a block of the same material.
 
 use super::section::{PlateIs, PreformSection};
 use super::{Preform, PreformSettings};
@@ -7,7 +7,7 @@ use bead_part::model::Mesh;
 use planar::Region;
 use serde::Serialize;
 
-/// What a process lays and what it costs.
+/// Deposition rate and prices of a process.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rates {
     /// Density of the metal, g/cm³.
@@ -29,31 +29,31 @@ pub struct Figures {
     pub preform_kg: f64,
     /// Mass of the plate, kg.
     pub plate_kg: f64,
-    /// Mass of the block from which the part could be milled, with the same stock, kg.
+    /// Mass of the block from which the part could be milled, with the same allowances, kg.
     pub billet_kg: f64,
-    /// What is milled off what is welded and off a plate that is kept, kg.
+    /// Mass milled off the deposited metal and off a plate that is kept, kg.
     pub milled_kg: f64,
-    /// Mass bought per mass of the part.
+    /// Buy-to-fly ratio: mass bought per mass of the part.
     pub buy_to_fly: f64,
-    /// The same for the block.
+    /// Buy-to-fly ratio of the block.
     pub billet_buy_to_fly: f64,
-    /// How long the arc burns, hours.
+    /// Time with the arc on, h.
     pub arc_hours: f64,
-    /// How long milling takes, hours.
+    /// Milling time, h.
     pub milling_hours: f64,
-    /// How long milling from the block takes, hours.
+    /// Time to mill the part from the block, h.
     pub billet_milling_hours: f64,
-    /// What wire, plate and hours cost; `None` without prices.
+    /// Cost of wire, plate and hours; `None` without prices.
     pub price: Option<f64>,
-    /// What the block and its milling cost; `None` without prices.
+    /// Cost of the block and its milling; `None` without prices.
     pub billet_price: Option<f64>,
-    /// Height above the plate in which it is sawn off, mm; `None` where the plate is kept.
+    /// Height above the plate at which the part is sawn off, mm; `None` if the plate is kept.
     pub cut_height: Option<f64>,
 }
 
 /// mm³ per cm³.
 const CM3: f64 = 1e3;
-/// Grams, of cm³ times g/cm³, per kilogram.
+/// Grams (cm³ times g/cm³) per kilogram.
 const GRAMS: f64 = 1e3;
 
 impl Figures {
@@ -119,18 +119,18 @@ impl Figures {
         sentences
     }
 
-    /// What is as small as can be: the price or, without prices, the hours of arc and mill with a kilogram of plate as long
-    /// as one of wire takes.
+    /// The value to minimise: the price or, without prices, the hours of arc and milling, with a kilogram of plate
+    /// counted as a fraction of a kilogram of wire.
     pub fn score(&self) -> f64 {
         let plate = self.plate_kg * self.arc_hours / self.preform_kg.max(f64::MIN_POSITIVE);
         self.price.unwrap_or(self.arc_hours + self.milling_hours + PLATE * plate)
     }
 }
 
-/// A kilogram of plate is worth this many kilograms of wire.
+/// A kilogram of plate counts as this many kilograms of wire.
 const PLATE: f64 = 0.1;
 
-/// Area of the plate under a preform, mm²: the rectangle around its lowest step, and the margin.
+/// Area of the plate under a preform, mm²: the rectangle around its lowest step, plus the margin.
 fn plate_area(steps: &[Region], rates: &Rates) -> f64 {
     let bounds = steps.first().and_then(Region::bounds);
     bounds.map_or(0.0, |bounds| {

@@ -2,18 +2,18 @@
 //!
 //! | rule | file |
 //! | --- | --- |
-//! | stock on all faces, holes that are welded shut, each layer on the metal of the one below | this one |
-//! | at least one bead everywhere, as far as the part's own corners, and as long as a pass | [`wide`] |
+//! | stock on all faces, holes to be welded shut, each layer supported by the one below | this one |
+//! | at least one bead everywhere, out to the part's own corners, and long enough for a pass | [`wide`] |
 //! | what is milled off, weights, hours and prices | [`figures`] |
-//! | the way up in which all of this costs least | [`orient`] |
+//! | the orientation in which all of this costs least | [`orient`] |
 //! | a closed surface of the result | [`solid`] |
 //! | the faces of the part, and how much metal lies over each | [`faces`] |
 //! | the keys of a profile | [`section`] |
 //!
-//! A preform is made of steps, thinner than a layer. From the top down, a step P(k) is the part within it with its stock, G(k),
-//! and what the step above needs to lie on: that step shrunk by how far it may hang. What is too narrow for a bead is
-//! then widened to one, and what is narrower than `fill_holes` closed. The part is taken where it is widest in a step, so that
-//! no slice of it reaches beyond the preform.
+//! A preform consists of steps, thinner than a layer. From the top down, a step P(k) is the part within it with its
+//! stock, G(k), united with the support that the step above needs: that step shrunk by the allowed overhang. Areas too
+//! narrow for a bead are then widened to one, and gaps narrower than `fill_holes` closed. In each step the part is
+//! taken at its widest, so that no slice of it extends beyond the preform.
 
 pub mod faces;
 pub mod figures;
@@ -38,15 +38,15 @@ pub struct PreformSettings {
     pub top: f64,
     /// Stock on faces that look down, mm.
     pub bottom: f64,
-    /// What is narrower than this is closed, mm.
+    /// Gaps narrower than this are closed, mm.
     pub fill_holes: f64,
-    /// How far a step may hang beyond the one below, rad from the vertical.
+    /// How far a step may overhang the one below, rad from the vertical.
     pub reach: f64,
     /// The plate.
     pub plate: Plate,
-    /// Width of a bead, mm; with 0, nothing is widened, as where ways up are compared.
+    /// Width of a bead, mm; with 0 nothing is widened, as when orientations are compared.
     pub bead_width: f64,
-    /// Width with room for two beads side by side, mm.
+    /// Width with space for two beads side by side, mm.
     pub room: f64,
     /// Thickness of a step, mm.
     pub step: f64,
@@ -54,7 +54,7 @@ pub struct PreformSettings {
     pub shortest: f64,
     /// Widest gap in the part's outline that is bridged, mm.
     pub close_gap: f64,
-    /// Points of the part's outline this close to the line that remains are dropped, mm.
+    /// Points of the part's outline within this distance of the simplified line are dropped, mm.
     pub simplify: f64,
 }
 
@@ -63,18 +63,18 @@ pub struct PreformSettings {
 pub enum Plate {
     /// It is sawn off.
     Sawn {
-        /// Height above the plate in which the saw cuts, mm.
+        /// Height above the plate at which the saw cuts, mm.
         cut: f64,
     },
     /// It becomes the lowest part of the part.
     Kept {
-        /// mm
+        /// Thickness of the plate, mm.
         thickness: f64,
     },
 }
 
 impl PreformSettings {
-    /// How high the part's lowest point lies above the plate, mm; negative where it lies in a plate that is kept.
+    /// Height of the part's lowest point above the plate, mm; negative if it lies within a plate that is kept.
     pub fn lift(&self) -> f64 {
         match self.plate {
             Plate::Sawn { cut } => cut + self.bottom,
@@ -82,12 +82,12 @@ impl PreformSettings {
         }
     }
 
-    /// Arcs are twice as exact as the part's outlines.
+    /// Arcs are twice as accurate as the part's outlines.
     fn join(&self) -> Join {
         Join::Round((self.simplify / 2.0).max(ARC_TOLERANCE_MM))
     }
 
-    /// How far a step may hang beyond the one below, mm.
+    /// How far a step may overhang the one below, mm.
     fn overhang(&self) -> f64 {
         self.step * self.reach.tan()
     }
@@ -96,11 +96,11 @@ impl PreformSettings {
 /// A part plus the stock that is milled off afterwards, in steps of one height.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preform {
-    /// The steps, the lowest first; it stands on the plate.
+    /// The steps, the lowest first; the preform stands on the plate.
     pub steps: Vec<Region>,
     /// Thickness of a step, mm.
     pub step: f64,
-    /// How high the part's lowest point lies above the plate, mm.
+    /// Height of the part's lowest point above the plate, mm.
     pub lift: f64,
 }
 
@@ -122,7 +122,7 @@ impl Preform {
     /// ```
     ///
     /// # Errors
-    /// [`Cancelled`] when the task was.
+    /// [`Cancelled`] if the task was cancelled.
     pub fn of(mesh: &Mesh, settings: &PreformSettings, task: &Task) -> Result<Self, Cancelled> {
         let own = Sections::of(mesh, settings, task)?;
         let mut steps: Vec<Region> = Vec::with_capacity(own.grown.len());
@@ -130,7 +130,7 @@ impl Preform {
         for k in (0..own.grown.len()).rev() {
             task.check()?;
             let (grown, bare) = (&own.grown[k], &own.bare[k]);
-            // Where nothing changes, the step is that above.
+            // If nothing changes, the step equals the one above.
             let same = own.grown.get(k + 1).is_some_and(|upper| upper == grown) && own.bare.get(k + 1) == Some(bare);
             let step = if same && above.0 == above.1 {
                 above.0.clone()
@@ -145,12 +145,12 @@ impl Preform {
             steps.push(step);
         }
         steps.reverse();
-        // The tip of a spike is no part of any slice.
+        // The tip of a spike is not part of any slice.
         while steps.pop_if(|top| top.is_empty()).is_some() {}
         Ok(Self { steps, step: settings.step, lift: settings.lift() })
     }
 
-    /// mm³
+    /// Volume, mm³.
     pub fn volume(&self) -> f64 {
         self.step * self.steps.iter().map(Region::area).sum::<f64>()
     }
@@ -162,7 +162,7 @@ impl Preform {
     }
 }
 
-/// A region without what is narrower than `width` (mm) around it: holes, slots and grooves.
+/// A region with gaps narrower than `width` (mm) filled: holes, slots and grooves.
 fn closed(region: &Region, width: f64, join: Join) -> Region {
     let by = width / 2.0;
     region.offset(by, join).offset(-by, join).union(region)
@@ -170,15 +170,15 @@ fn closed(region: &Region, width: f64, join: Join) -> Region {
 
 /// What a part needs in each step.
 struct Sections {
-    /// The part itself, where it is widest in the step.
+    /// The part itself, at its widest in the step.
     bare: Vec<Region>,
     /// The part with its stock.
     grown: Vec<Region>,
 }
 
-/// Parts of a step in which the part is cut at both ends.
+/// Cells per step; the part is cut at both ends of each cell.
 const CELLS: usize = 2;
-/// A cell is cut this far from its ends, in cells: a face there belongs to one side.
+/// A cell is cut this far from its ends, in cells, so that a face there belongs to one side.
 const INSIDE: f64 = 1e-3;
 
 impl Sections {
@@ -186,10 +186,10 @@ impl Sections {
         let (height, lift, cell) = (mesh.size().z, settings.lift(), settings.step / CELLS as f64);
         let count = ((lift + height + settings.top) / settings.step - 1e-6).ceil().max(0.0) as usize;
         let cells = Self::cells(mesh, count * CELLS, settings, task)?;
-        // Stock lies above faces that look up and below those that look down.
+        // Stock lies above faces that look up, and below those that look down.
         let (up, down) =
             ((settings.top / cell - 1e-6).ceil() as usize, (settings.bottom / cell - 1e-6).ceil() as usize);
-        // The saw cuts through what the part stands on.
+        // The saw cuts through the metal on which the part stands.
         let foot = cells.iter().position(|region| !region.is_empty()).unwrap_or(0);
         let of = |k: usize| -> Result<(Region, Region), Cancelled> {
             task.check()?;

@@ -1,4 +1,4 @@
-//! The way up in which a preform costs least.
+//! The orientation in which a preform costs least.
 //!
 //! 1. The part becomes a grid of cells, looked at from directions all over the sphere, from all flat faces and axes. For each
 //!    direction, layers of bits are laid from the top down as the preform's steps are: the part, and the layer above shrunk by
@@ -17,41 +17,44 @@ use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::f64::consts::PI;
 
-/// Directions all over the sphere.
+/// Directions spread over the sphere.
 const DIRECTIONS: usize = 1200;
 /// Cells along the longest side of the part.
 const CELLS: f64 = 56.0;
-/// Rounds in which ever fewer directions, no two alike, are scored ever more exactly and turned ever less.
+/// Rounds in which ever fewer directions, no two alike, are scored ever more accurately and turned by ever smaller
+/// angles.
 const ROUNDS: [Round; 3] = [
     Round { count: 48, steps: 20.0, turns: &[] },
     Round { count: 6, steps: 20.0, turns: &[6.0, 3.0] },
     Round { count: 3, steps: STEPS, turns: &[2.0, 1.0, 0.5] },
 ];
-/// A part of fewer triangles is looked at from twice as many directions.
+/// A part with fewer triangles is viewed from twice as many directions.
 const LARGE: usize = 40_000;
-/// Steps in the height of a part whose score counts.
+/// Steps over the height of a part for the final score.
 const STEPS: f64 = 40.0;
-/// Directions nearer to each other than this are alike: 8°.
+/// Directions closer than this are alike: cosine of 8°.
 const ALIKE: f64 = 0.9903;
 
-/// Outlines of a part that is scored are simplified by this much, in steps.
+/// Outlines of a part being scored are simplified by this many steps.
 const ROUGH: f64 = 0.05;
 
 /// A direction of the part that points down, with its figures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oriented {
-    /// Unit vector.
+    /// Unit vector, in the part's coordinates.
     pub down: DVec3,
-    /// Of a preform in coarse steps, without the beads of thin places.
+    /// Figures of a preform in coarse steps, without the beads for thin places.
     pub figures: Figures,
 }
 
-/// The best ways up, no two alike, the best one first; for a surface with an opening wider than a bead, as it lies.
+/// The best orientations, no two alike, the best one first; only the given one for a surface with an opening wider than
+/// a bead.
 ///
 /// # Errors
-/// [`Cancelled`] when the task was.
+/// [`Cancelled`] if the task was cancelled.
 pub fn best(mesh: &Mesh, settings: &PreformSettings, rates: &Rates, task: &Task) -> Result<Vec<Oriented>, Cancelled> {
-    // An open skin of a solid loses metal where its contours do not close; as it lies, they were meant to.
+    // An open skin of a solid loses metal where its contours do not close; in the given orientation they were meant to
+    // close.
     if holes::openings(mesh).iter().any(|opening| opening.width > settings.bead_width) {
         return Ok(vec![Oriented::of(mesh, DVec3::NEG_Z, settings, rates, task)?]);
     }
@@ -78,15 +81,15 @@ pub fn best(mesh: &Mesh, settings: &PreformSettings, rates: &Rates, task: &Task)
 
 /// A round of the search.
 struct Round {
-    /// Directions.
+    /// Number of directions.
     count: usize,
-    /// Steps in the height of the part.
+    /// Steps over the height of the part.
     steps: f64,
-    /// Angles by which each is turned as long as that helps, degrees.
+    /// Angles by which each direction is turned as long as that helps, °.
     turns: &'static [f64],
 }
 
-/// The first directions that are not alike.
+/// The first `count` directions that are not alike.
 fn apart(directions: &[DVec3], count: usize) -> Vec<DVec3> {
     let mut few: Vec<DVec3> = Vec::new();
     for down in directions {
@@ -97,7 +100,7 @@ fn apart(directions: &[DVec3], count: usize) -> Vec<DVec3> {
     few
 }
 
-/// What directions are scored for.
+/// The part and settings for which directions are scored.
 struct Search<'a> {
     mesh: &'a Mesh,
     settings: &'a PreformSettings,
@@ -106,13 +109,13 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// A direction with the figures of the preform that stands so, with about this number of steps in the height of the
-    /// part.
+    /// A direction with the figures of the preform in that orientation, with about this number of steps over the height
+    /// of the part.
     fn at(&self, down: DVec3, steps: f64) -> Result<Oriented, Cancelled> {
         let Self { settings, rates, .. } = self;
         let turned = standing(self.mesh, down);
         let step = settings.step.max(turned.size().z / steps);
-        // Otherwise a flat part would be scored as up to a step too high, and better a little askew.
+        // Otherwise a flat part would be scored up to one step too high, and would do better slightly tilted.
         let whole = settings.lift() + turned.size().z + settings.top;
         let step = whole / (whole / step).floor().max(1.0);
         let simplify = settings.simplify.max(ROUGH * step);
@@ -121,7 +124,7 @@ impl Search<'_> {
         Ok(Oriented { down, figures: Figures::of(&turned, &preform, &coarse, rates) })
     }
 
-    /// The best direction that is found from one by turning it.
+    /// The best direction found by turning one.
     fn refined(&self, mut best: Oriented, steps: f64, turns: &[f64]) -> Result<Oriented, Cancelled> {
         for degrees in turns {
             let across = best.down.any_orthonormal_vector();
@@ -136,10 +139,10 @@ impl Search<'_> {
 }
 
 impl Oriented {
-    /// A direction with the figures of the preform that stands so.
+    /// A direction with the figures of the preform in that orientation.
     ///
     /// # Errors
-    /// [`Cancelled`] when the task was.
+    /// [`Cancelled`] if the task was cancelled.
     pub fn of(
         mesh: &Mesh,
         down: DVec3,
@@ -155,7 +158,7 @@ impl Oriented {
     }
 }
 
-/// A mesh turned so that a direction points down, set onto z = 0.
+/// A mesh turned so that a direction points down, and moved to stand on z = 0.
 pub fn standing(mesh: &Mesh, down: DVec3) -> Mesh {
     let turn = DQuat::from_rotation_arc(down.normalize_or(DVec3::NEG_Z), DVec3::NEG_Z);
     let mut turned = mesh.clone();
@@ -165,7 +168,8 @@ pub fn standing(mesh: &Mesh, down: DVec3) -> Mesh {
     turned
 }
 
-/// Directions spread evenly over the sphere (a spiral by the golden angle), those of the axes, and of the part's flat faces.
+/// Directions spread evenly over the sphere (a golden-angle spiral), those of the axes, and those of the part's flat
+/// faces.
 fn directions(mesh: &Mesh) -> Vec<DVec3> {
     let golden = PI * (3.0 - 5_f64.sqrt());
     let spiral = |k: usize| {
@@ -175,7 +179,7 @@ fn directions(mesh: &Mesh) -> Vec<DVec3> {
         DVec3::new(radius * cos, radius * sin, z)
     };
     let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
-    // As the part lies comes first among equals.
+    // The given orientation comes first among equals.
     let mut all = vec![DVec3::NEG_Z];
     all.extend(stand::faces(mesh).chain(axes).chain((0..DIRECTIONS).map(spiral)));
     all
@@ -188,20 +192,20 @@ struct Cells {
     /// Side of a cell, mm.
     side: f64,
     count: UVec3,
-    /// For each row along x, whether its cells lie in the part.
+    /// For each row along x, a bit per cell: whether it lies in the part.
     rows: Vec<u128>,
     /// Number of cells in the part.
     inside: u64,
     /// Thickness of the stock, mm.
     stock: f64,
-    /// Points of the part that are farthest out in some direction.
+    /// Points of the part that are farthest in some direction.
     extremes: Vec<DVec3>,
     /// Volume of the part, mm³.
     volume: f64,
 }
 
 impl Cells {
-    /// `None` for a part without cells. Stock of half a cell or more is a layer of cells around the part.
+    /// `None` for a part without cells. Stock of at least half a cell becomes a layer of cells around the part.
     fn of(mesh: &Mesh, settings: &PreformSettings, task: &Task) -> Result<Option<Self>, Cancelled> {
         let (low, high) = mesh.bounds();
         let size = high - low;
@@ -230,7 +234,7 @@ impl Cells {
         Ok((inside > 0).then(|| if stock >= side / 2.0 { bare.grown() } else { bare }))
     }
 
-    /// With a layer of cells around it.
+    /// The same with a layer of cells around it.
     fn grown(self) -> Self {
         let count = self.count + 2;
         let at = |y: u32, z: u32| match (y.checked_sub(1), z.checked_sub(1)) {
@@ -260,7 +264,7 @@ impl Cells {
         }
     }
 
-    /// The score of a preform for which a direction points down, by the number of its cells.
+    /// The score of a preform with this direction down, from the number of its cells.
     fn score(&self, down: DVec3, settings: &PreformSettings, rates: &Rates) -> f64 {
         let turn = DMat3::from_quat(DQuat::from_rotation_arc(down, DVec3::NEG_Z));
         let points = || self.extremes.iter().map(|p| turn * *p);
@@ -291,7 +295,7 @@ impl Cells {
         let raised = foot as f64 * self.side * self.side * settings.lift();
         let volume = (laid as f64 * cell + raised).max(0.0);
         let columns = above.iter().fold(0, |all, row| all | row);
-        // Nothing may reach the lowest layer.
+        // The lowest layer may be empty.
         let wide = f64::from((u128::BITS - columns.leading_zeros()).saturating_sub(columns.trailing_zeros()));
         let filled = |row: &u128| *row != 0;
         let deep = match (above.iter().position(filled), above.iter().rposition(filled)) {
@@ -304,17 +308,17 @@ impl Cells {
     }
 }
 
-/// The farthest point is kept for one direction in this many.
+/// The farthest point is kept for one in this many directions.
 const EXTREMES: usize = 4;
 
-/// The cells of a row whose middles lie between pairs of ends.
+/// The cells of a row whose middles lie between pairs of crossings.
 fn row(ends: &[f64], low: f64, side: f64) -> u128 {
     let cell = |x: f64| ((x - low) / side - 0.5).ceil().clamp(0.0, 127.0) as u32;
     let bits = |ends: &[f64]| (cell(ends[0])..cell(ends[1])).fold(0, |row, x| row | (1_u128 << x));
     ends.chunks_exact(2).map(bits).fold(0, |row, more| row | more)
 }
 
-/// Rows without the cells at their edge: those with a free neighbour at a side, or also at a corner.
+/// Rows without the cells at their edge: those with a free neighbour at a side, or (if `square`) also at a corner.
 fn shrunk(rows: &[u128], square: bool) -> Vec<u128> {
     let narrow = |row: u128| row & (row << 1) & (row >> 1);
     let at = |k: Option<usize>| k.and_then(|k| rows.get(k)).copied().unwrap_or(0);

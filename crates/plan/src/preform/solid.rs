@@ -6,8 +6,8 @@ use bead_part::model::solid::Solid;
 use rayon::prelude::*;
 
 impl Preform {
-    /// A closed surface: a prism for each island of steps that are alike, face on face, standing on z = 0. Its slices are the
-    /// steps themselves.
+    /// A closed surface: a prism for each island of identical steps, face on face, standing on z = 0. Its slices are
+    /// the steps themselves.
     pub fn mesh(&self) -> Mesh {
         let steps: Vec<usize> = (0..self.steps.len()).collect();
         let alike: Vec<&[usize]> = steps.chunk_by(|&a, &b| self.steps[a] == self.steps[b]).collect();

@@ -6,22 +6,22 @@ use glam::DVec2;
 use planar::nearest::foot;
 use planar::{Join, Polygon, Region, min_area_rect};
 
-/// Pieces of the part that no bead reaches are looked at from this area on, in squared bead widths.
+/// Pieces of the part that no bead reaches are considered from this area on, in squared bead widths.
 const WORTH: f64 = 1e-3;
-/// The same for other pieces with too little room for two beads: smaller ones are corners, which every outline has.
+/// The same for other pieces with too little space for two beads: smaller ones are corners, which every outline has.
 const FEATURE: f64 = 0.12;
-/// Rounds in which room is made for two beads.
+/// Rounds in which space is made for two beads.
 const ROUNDS: usize = 6;
-/// The accuracy of beads' outlines, mm.
+/// Accuracy of bead outlines, mm.
 const TOLERANCE_MM: f64 = 0.01;
-/// A bead is this fraction narrower where it is laid along an edge: rounding does not count.
+/// A bead laid along an edge is narrower by this fraction, to allow for rounding.
 const HAIR: f64 = 1e-3;
-/// Islands are longer than the shortest pass by this fraction: a pass ends before the end of its island.
+/// Islands are longer than the shortest pass by this fraction, because a pass ends before the end of its island.
 const LONGER: f64 = 0.1;
 
-/// A region in which beads reach everything that is `bare` part. Walls become as wide as a bead; what is narrow and too short for
-/// a pass of its own gets room for two beads side by side; a bead is laid into each corner of the part that is too sharp;
-/// and islands become long enough for a pass.
+/// A region in which beads reach everything that is `bare` part. Walls become as wide as a bead; areas that are narrow
+/// and too short for a pass of their own get space for two beads side by side; a bead is added at each corner of the
+/// part that is too sharp; and islands become long enough for a pass.
 pub fn widened(region: &Region, bare: &Region, settings: &PreformSettings) -> Region {
     let (w, room) = (settings.bead_width, settings.room);
     let walls: Vec<Vec<DVec2>> = region.polygons().iter().flat_map(|island| thin_walls(island, w, room)).collect();
@@ -64,13 +64,13 @@ fn beads(lines: &[Vec<DVec2>], width: f64) -> Region {
     planar::buffer(lines, false, width / 2.0, TOLERANCE_MM)
 }
 
-/// What a disc of this width (mm) reaches.
+/// The area that a disc of this width (mm) reaches.
 fn opened(region: &Region, width: f64) -> Region {
     let by = (1.0 - HAIR) * width / 2.0;
     region.offset(-by, Join::ROUND).offset(by, Join::ROUND)
 }
 
-/// The middles of walls with room for one bead, or less.
+/// The middles of walls with space for at most one bead.
 fn thin_walls(island: &Polygon, width: f64, room: f64) -> Vec<Vec<DVec2>> {
     let centre = island.centres_of_disc(room / 2.0, Join::ROUND);
     if island.is_roomy_for_disc(room / 2.0, &centre, FEATURE * width * width) {
@@ -94,7 +94,7 @@ fn bead_into(piece: &Polygon, centres: &Region, width: f64) -> Option<Vec<DVec2>
     Some(vec![centre, tip + (centre - tip).normalize_or_zero() * width / 2.0])
 }
 
-/// A pass through an island that is too short for one, mm.
+/// A pass through an island that is too short for one, mm; `None` if it is long enough.
 fn longer(island: &Polygon, shortest: f64, width: f64) -> Option<Vec<DVec2>> {
     let rect = min_area_rect(island.outer.points())?;
     let (long, along) =

@@ -23,7 +23,7 @@ pub struct LayerProcess {
 }
 
 impl Process {
-    /// The process in the layer with this index: the first row that includes it applies.
+    /// The process in the layer with this index: the first row that includes the layer applies.
     pub fn at_layer(&self, index: usize) -> Self {
         let mut process = self.clone();
         if let Some(row) = self.layers.iter().find(|row| (row.from..=row.to).contains(&(index + 1))) {
@@ -34,7 +34,7 @@ impl Process {
         process
     }
 
-    /// The first row of layers that makes no sense.
+    /// The first invalid row of layers.
     pub fn broken(&self) -> Option<Broken> {
         let (least, most) = (0.2 * self.deposition_speed, 5.0 * self.deposition_speed);
         self.layers.iter().find_map(|row| {

@@ -1,4 +1,4 @@
-//! The process: wire, arc, speed, gas, moves with the arc off, and how passes begin and end; sections of a profile.
+//! The process: wire, arc, speed, gas, travels, and how passes begin and end; sections of a profile.
 
 mod by_layer;
 mod cost;
@@ -121,7 +121,7 @@ impl Process {
 }
 
 impl Process {
-    /// Speed of the torch at a given pace of the metal, mm/s.
+    /// Speed of the torch at a given pace, mm/s.
     pub fn speed_at(&self, pace: f64) -> f64 {
         match self.follow {
             Follow::Speed => pace * self.rate,
@@ -134,7 +134,7 @@ impl Process {
         self.rate
     }
 
-    /// Wire feed at a given pace of the metal (mm/s), as a multiple of the nominal wire feed.
+    /// Wire feed at a given pace (mm/s), as a multiple of the nominal wire feed.
     pub fn feed_at(&self, pace: f64) -> f64 {
         match self.follow {
             Follow::Speed => self.rate,
@@ -142,9 +142,9 @@ impl Process {
         }
     }
 
-    /// Heat per length of bead at a given pace of the metal, J/mm: current × voltage / pace. It grows with the metal
-    /// whether the speed or the wire feed changes, since the current follows the wire feed in the arcs used here
-    /// (synergic lines, CMT). `None` if current or voltage is not given.
+    /// Heat per length of bead at a given pace, J/mm: current × voltage / pace. It is proportional to the metal whether
+    /// the speed or the wire feed changes, since the current follows the wire feed in the arcs used here (synergic
+    /// lines, CMT). `None` if current or voltage is not given.
     pub fn heat_at(&self, pace: f64) -> Option<f64> {
         Some(self.current? * self.voltage? / (pace * self.rate))
     }

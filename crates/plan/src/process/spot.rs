@@ -1,8 +1,8 @@
 //! The section `[spot]`: a dot, welded with the torch standing still, for islands with no room for a bead.
 //!
-//! The metal of a dot is that of the bead in the time for which the arc burns. It is a dome, half an ellipsoid of height h
-//! and radius a: V = 2/3 π a² h. A dot that is welded longer holds more metal at the same height, so its diameter goes
-//! with the square root of the time.
+//! The volume of a dot is that of the bead laid in the time for which the arc burns. It is a dome, half an ellipsoid of
+//! height h and radius a: V = 2/3 π a² h. A dot that is welded longer has more volume at the same height, so its
+//! diameter grows with the square root of the time.
 
 use crate::limit::{Limit, limits};
 use serde::{Deserialize, Serialize};
@@ -50,33 +50,33 @@ impl Spot {
 /// A dot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
-    /// How long the arc burns, s.
+    /// Time for which the arc burns, s.
     time: f64,
-    /// What it holds, mm³.
+    /// Its volume, mm³.
     metal: f64,
-    /// mm
+    /// Diameter, mm.
     diameter: f64,
 }
 
 impl Dot {
-    /// The torch moves this far while it welds a dot, mm: few languages have a word for a pass without length, and most round speeds
-    /// to 0.1 mm/s.
+    /// The torch moves this far while it welds a dot, mm: few languages can express a pass without length, and most
+    /// round speeds to 0.1 mm/s.
     pub const LENGTH: f64 = 1.0;
-    /// A dot is welded for at least and at most this many times as long as in the trial.
+    /// Least and greatest welding time of a dot, over that in the trial.
     const TIMES: RangeInclusive<f64> = 0.5..=2.0;
 
-    /// Diameter, mm, of a dot with this much metal, mm³; `None` where that is too far from what was tried.
+    /// Diameter, mm, of a dot of this volume, mm³; `None` if that is too far from what was tried.
     pub fn diameter_of(&self, metal: f64) -> Option<f64> {
         let times = metal / self.metal;
         Self::TIMES.contains(&times).then(|| self.diameter * times.sqrt())
     }
 
-    /// How long the arc burns for a dot of this diameter, mm, in s.
+    /// Welding time of a dot of this diameter, mm, in s.
     pub fn seconds(&self, diameter: f64) -> f64 {
         self.time * (diameter / self.diameter).powi(2)
     }
 
-    /// Pace, mm/s, at which the torch takes that long for [`Self::LENGTH`].
+    /// Pace, mm/s, at which the torch takes that time for [`Self::LENGTH`].
     pub fn pace(&self, diameter: f64) -> f64 {
         Self::LENGTH / self.seconds(diameter)
     }

@@ -26,7 +26,8 @@ impl TorchShape {
         }
     }
 
-    /// Radius of the room, mm, this far above the wire's tip, mm; `None` where there is only the wire.
+    /// Radius of the cone, mm, this far above the wire's tip, mm; `None` below the nozzle, where there is only the
+    /// wire.
     pub fn radius(&self, above: f64) -> Option<f64> {
         let along = above - self.stick_out;
         (along >= 0.0).then(|| self.nozzle_radius + along * self.cone.to_radians().tan())

@@ -5,10 +5,10 @@ use crate::pass::{Along, Pass, PassKind};
 use crate::process::StartStop;
 use glam::DVec3;
 
-/// A change of power closer to a point than this is made at the point, mm: no move is shorter.
+/// A change of power closer to a point than this is moved to the point, mm, so that no move is shorter.
 const SNAP_MM: f64 = 0.01;
 
-/// A point of a path with the values for the move to it; at the first point they mean nothing.
+/// A point of a path with the values for the move to it; those of the first point are unused.
 #[derive(Clone, Copy)]
 struct Move {
     to: DVec3,
@@ -18,7 +18,7 @@ struct Move {
     width: f64,
 }
 
-/// The points of a pass, each with the pace (mm/s) of the move to it; the pace of the first point means nothing.
+/// The points of a pass, each with the pace (mm/s) of the move to it; the pace of the first point is unused.
 ///
 /// ```
 /// use bead_plan::pass::{Along, Pass, PassKind};
@@ -52,7 +52,7 @@ pub fn welded(pass: &Pass, ends: &StartStop, bead_height: f64) -> Pass {
     Pass { kind: pass.kind, closed: false, points: moves.iter().map(|m| m.to).collect(), width, pace, wait: pass.wait }
 }
 
-/// How a pass begins and ends where the arc may stay lit before or after it.
+/// How a pass begins and ends, given that the arc may stay lit before or after it.
 pub fn lit_ends(ends: &StartStop, lit: Lit) -> StartStop {
     let mut ends = ends.clone();
     if lit.before {
@@ -103,7 +103,7 @@ fn lead(moves: &mut Vec<Move>, ends: &StartStop) {
         return;
     }
     let total = length(moves);
-    // A pass too short for both gets them in proportion, with nothing between.
+    // If a pass is too short for both, they are shortened in proportion, with nothing between.
     let part = (total / (wanted[0] + wanted[1])).min(1.0);
     if wanted[0] > 0.0 {
         let end = cut(moves, wanted[0] * part);
@@ -115,9 +115,9 @@ fn lead(moves: &mut Vec<Move>, ends: &StartStop) {
     }
 }
 
-/// Number of steps in which humps and craters fall.
+/// Number of steps in which a hump or crater falls off.
 const STEPS: u32 = 4;
-/// Fraction of the bead that is left in the deepest crater.
+/// Fraction of the bead that remains in the deepest crater.
 const LEAST: f64 = 0.05;
 
 /// Sets the paces that build a pass's hump and crater: a bead of the same width is higher where it is laid more slowly.
@@ -137,7 +137,7 @@ fn hump_and_crater(moves: &mut Vec<Move>, ends: &StartStop, bead_height: f64) {
     }
 }
 
-/// The index of the point at the distance `at` along the path, mm; where there is none, a point is inserted.
+/// The index of the point at the distance `at` along the path, mm; a point is inserted if there is none.
 fn cut(moves: &mut Vec<Move>, at: f64) -> usize {
     let mut passed = 0.0;
     for i in 1..moves.len() {

@@ -1,9 +1,9 @@
-//! The room that welded bodies take: the box around them, around which the torch travels from one to another.
+//! The box around the welded bodies, which the torch avoids on its way from one to another.
 
 use bead_part::chart::At;
 use glam::DVec3;
 
-/// The box around all points added; nothing at first.
+/// The box around all points added so far; empty at first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Room {
     low: DVec3,
@@ -22,8 +22,8 @@ impl Room {
         (self.low, self.high) = (self.low.min(p), self.high.max(p));
     }
 
-    /// How far the torch moves out along the normal of a place until it is `clearance` (mm) outside of the room, mm; at least
-    /// that clearance.
+    /// How far the torch moves out along the normal of a point until it is `clearance` (mm) outside the box, mm; at
+    /// least that clearance.
     pub(super) fn out(&self, at: &At, clearance: f64) -> f64 {
         let (low, high) = (self.low - clearance, self.high + clearance);
         if (low.cmpgt(at.place) | high.cmplt(at.place)).any() {
@@ -34,7 +34,7 @@ impl Room {
         ways.into_iter().filter(|way| way.is_finite()).fold(f64::INFINITY, f64::min).max(clearance)
     }
 
-    /// The way between two places outside of the room: up at its side, across above it, and down.
+    /// The path between two points outside the box: up at its side, across above it, and down.
     pub(super) fn around(&self, from: DVec3, to: DVec3, clearance: f64) -> Vec<DVec3> {
         let top = (self.high.z + clearance).max(from.z).max(to.z);
         let [aside, beside] = [from, to].map(|p| self.aside(p, clearance));
@@ -43,7 +43,7 @@ impl Room {
         legs.split_off(1)
     }
 
-    /// A place from which the way straight up is free.
+    /// A point from which the path straight up is free.
     fn aside(&self, p: DVec3, clearance: f64) -> DVec3 {
         let (low, high) = (self.low - clearance, self.high + clearance);
         let is_under = p.z < high.z && (p.cmpgt(low) & p.cmplt(high)).bitmask() & 0b11 == 0b11;

@@ -1,4 +1,4 @@
-//! Follows the torch: the travels between passes, how long everything takes, and how long it must wait.
+//! Follows the torch: the travels between passes, the time that everything takes, and the waits.
 
 use super::WeldSettings;
 use super::path::lit_ends;
@@ -13,32 +13,32 @@ use glam::DVec3;
 /// Waits are multiples of this, s; they are rounded up, never down.
 const WAIT_STEP: f64 = 0.01;
 
-/// Where the torch is, and how long the layer has taken.
+/// Position of the torch, and the time since the layer began.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Torch {
-    /// As it is in the current layer, and as in the profile.
+    /// The process in the current layer, and that of the profile.
     process: Option<Process>,
     nominal: Option<Process>,
-    /// How passes begin and end, and how those of the current layer do, whose arc may stay lit.
+    /// How passes begin and end in general, and in the current layer, where the arc may stay lit.
     usual: StartStop,
     ends: StartStop,
     lit: Lit,
     motion: Option<Motion>,
     arc_end_time: Option<f64>,
     travel_speed: f64,
-    /// How the layers of each body lie in space, the body being welded, and the height of its layer's middle, mm.
+    /// The chart of each body, the body being welded, and the height of its layer's middle, mm.
     charts: Vec<Chart>,
     body: usize,
     middle: f64,
-    /// The room that the welded bodies take, where there are several.
+    /// The box around the welded bodies, if there are several.
     room: Room,
     clearance: f64,
     at: Option<DVec3>,
-    /// Height of the last pass's end, mm: travels keep clear of it.
+    /// Height of the end of the last pass, mm: travels stay clear of it.
     low: f64,
     /// Height of all that is built, mm: the travel to another part leads over it.
     highest: f64,
-    /// Whether a layer begins.
+    /// Whether a layer has just begun.
     fresh: bool,
     /// Time since the layer began, s.
     seconds: f64,
@@ -47,7 +47,7 @@ pub struct Torch {
 /// A wait with the arc off.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pause {
-    /// Where the torch waits, mm.
+    /// Position of the torch while it waits, mm.
     pub at: DVec3,
     /// How long, s.
     pub seconds: f64,
@@ -68,11 +68,11 @@ pub struct Way {
     pub moving: f64,
 }
 
-/// The way from the end of one body to the beginning of another, in space: out along the normal, around all that is welded, and to
-/// where the new body's first pass lies straight below.
+/// The path from the end of one body to the beginning of another, in space: out along the normal, around all that is
+/// welded, and to a point straight above the new body's first pass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transfer {
-    /// Ends of its legs, and the torch's attitude there.
+    /// Ends of its legs, and the torch's orientation there.
     pub legs: Vec<At>,
     /// Its length, mm.
     pub length: f64,
@@ -83,9 +83,9 @@ pub struct Transfer {
 /// What comes before the first pass of a layer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Begun {
-    /// The way to another body.
+    /// The travel to another body.
     pub transfer: Option<Transfer>,
-    /// The wait that the layer before needs.
+    /// The wait after the previous layer.
     pub pause: Option<Pause>,
 }
 
@@ -113,20 +113,20 @@ pub struct Welded {
     pub length: f64,
     /// Time with the torch moving, s.
     pub moving: f64,
-    /// The part of it lost to speeding up and slowing down, s.
+    /// The part of it lost to acceleration, s.
     pub slowed: f64,
-    /// Time in which the nominal wire feed lays its metal, including the crater's, s.
+    /// Time in which the nominal wire feed supplies its metal, including the crater's, s.
     pub metal: f64,
     /// Time for which the arc burns on the spot in the crater, s.
     pub crater: f64,
     /// Time for gas preflow and arc start before the torch moves, s.
     pub before: f64,
-    /// Time for arc end, gas postflow and drawing the wire back after the crater, s.
+    /// Time for arc end, gas postflow and retracting the wire after the crater, s.
     pub after: f64,
 }
 
 impl Torch {
-    /// A torch whose travels count, but not its times; it never waits.
+    /// A torch that counts travels but no times, and never waits; `clearance` is that of travels, mm.
     pub fn new(clearance: f64) -> Self {
         Self {
             process: None,
@@ -150,7 +150,7 @@ impl Torch {
         }
     }
 
-    /// A torch whose travels and times count.
+    /// A torch that counts travels and times.
     pub fn of(settings: &WeldSettings) -> Self {
         let WeldSettings { process, ends, travel, motion, arc_end_time, standing, charts, base } = settings.clone();
         let mut room = Room::default();
@@ -175,7 +175,7 @@ impl Torch {
         &self.ends
     }
 
-    /// Whether the arc burns before and after the pass of the current layer.
+    /// Whether the arc stays lit before and after the pass of the current layer.
     pub fn lit(&self) -> Lit {
         self.lit
     }
@@ -185,13 +185,13 @@ impl Torch {
         self.charts.iter().all(Chart::is_level)
     }
 
-    /// How the current layer lies in space; `None` where it is level.
+    /// The current layer in its chart; `None` if it is level.
     pub fn sheet(&self) -> Option<Sheet<'_>> {
         let chart = &self.charts[self.body];
         (!chart.is_level()).then(|| chart.sheet(self.middle))
     }
 
-    /// Where it is; `None` before the first pass.
+    /// Position, mm; `None` before the first pass.
     pub fn at(&self) -> Option<DVec3> {
         self.at
     }
@@ -206,13 +206,13 @@ impl Torch {
         self.process.as_ref().map_or(1.0, |process| process.feed_at(pace))
     }
 
-    /// Wire feed in a crater, as a multiple of the nominal one.
+    /// Wire feed while a crater is filled, as a multiple of the nominal one.
     pub fn crater_feed(&self) -> f64 {
         self.usual.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
     }
 
-    /// Begins a layer from the pass with the index `first` on: the way to it where it belongs to another body, and the wait that the
-    /// previous layer needs, unless the arc stays lit. Nothing happens where the layer has no passes.
+    /// Begins a layer at the pass with index `first`: the travel to it if it belongs to another body, and the wait that
+    /// the previous layer needs, unless the arc stays lit. Does nothing if the layer has no passes.
     pub fn begin_layer(&mut self, layer: &Layer, first: usize) -> Begun {
         let (Some(start), lit) = (layer.passes.get(first).and_then(|pass| pass.start()), layer.lit) else {
             return Begun::default();
@@ -223,12 +223,13 @@ impl Torch {
         let missing = self.usual.min_layer_time - self.seconds;
         let waits = if lit.before { 0.0 } else { missing.max(self.usual.interpass_time) };
         let pause = self.pause(waits);
-        // The wait counts for neither layer.
+        // The wait belongs to neither layer.
         self.seconds = 0.0;
         Begun { transfer, pause }
     }
 
-    /// Takes the torch's place to the coordinates of a layer, whose first pass begins at `start`; to another body, it travels.
+    /// Converts the torch's position to the coordinates of a layer whose first pass begins at `start`; travels if that
+    /// is another body.
     fn move_to(&mut self, layer: &Layer, start: DVec3) -> Option<Transfer> {
         let (from, middle) = (self.charts[self.body].clone(), std::mem::replace(&mut self.middle, layer.middle()));
         if layer.body == self.body {
@@ -252,7 +253,7 @@ impl Torch {
         Some(Transfer { legs, length, moving })
     }
 
-    /// Waits for `seconds` before a pass, above the part; `None` where there is nothing to wait for.
+    /// Waits for `seconds` before a pass, above the part; `None` if there is no wait.
     pub fn wait(&mut self, seconds: f64) -> Option<Pause> {
         if self.lit.before {
             return None;
@@ -272,8 +273,8 @@ impl Torch {
     }
 
     /// The travel to the start of a pass: up above the higher end, across, and down. Before the first pass there is no
-    /// place to rise from. Where a layer does not rise above the last one, another part begins, and the travel leads over all
-    /// that is built.
+    /// position to rise from. A layer that does not rise above the last one begins another part, and the travel leads
+    /// over all that is built.
     ///
     /// ```
     /// use bead_plan::{pass::PassKind, weld::Torch};
@@ -294,13 +295,13 @@ impl Torch {
         let another = std::mem::take(&mut self.fresh) && start.z <= self.low;
         let below = if another || self.at.is_none() { self.highest } else { self.low };
         let high = below.max(start.z) + self.clearance;
-        // After a wait the torch is already at this height or higher.
+        // After a wait the torch is already at least this high.
         let top = self.at.map_or(high, |at| at.z.max(high));
         let rise = self.at.map(|at| at.with_z(top));
         self.go(rise.into_iter().chain([start.with_z(top), start]))
     }
 
-    /// Counts turns around the chart's axis so that the way to a place is short.
+    /// Shifts the position by whole turns around the chart's axis so that the travel to a point is short.
     pub fn turn_towards(&mut self, to: DVec3) {
         let chart = &self.charts[self.body];
         let Some(at) = self.at.filter(|_| chart.goes_around()) else { return };
@@ -309,7 +310,7 @@ impl Torch {
         self.at = Some(sheet.turned(at.truncate(), turns).map_or(at, |p| p.extend(at.z)));
     }
 
-    /// The move up from the end of a pass: whatever comes between passes happens above the fresh bead.
+    /// The move up from the end of a pass: everything between passes happens above the fresh bead.
     pub fn retract(&mut self) -> Way {
         if self.lit.after {
             return Way::default();
@@ -329,7 +330,7 @@ impl Torch {
         Way { legs, length, moving }
     }
 
-    /// Length and time of a travel from where the torch is, mm and s; its legs begin and end at rest. The travel to
+    /// Length and time of a travel from the torch's position, mm and s; each leg begins and ends at rest. The travel to
     /// the very first point counts as 0.
     fn travel(&self, legs: &[DVec3]) -> (f64, f64) {
         self.at.map_or((0.0, 0.0), |at| self.travel_from(at, legs.iter().copied()))
@@ -346,8 +347,8 @@ impl Torch {
         (length, time)
     }
 
-    /// Welds a pass from where the torch is: points and paces, as [`path`](super::path) gives them. A dot has no crater
-    /// that would have to be filled.
+    /// Welds a pass from the torch's position: points and paces, as [`path`](super::path) gives them. A dot has no
+    /// crater to fill.
     ///
     /// ```
     /// use bead_plan::{pass::PassKind, weld::Torch};
@@ -389,8 +390,8 @@ impl Torch {
         welded
     }
 
-    /// Time for gas preflow and arc start, and for arc end, gas postflow and drawing the wire back at its nominal
-    /// speed, s per pass.
+    /// Time for gas preflow and arc start, and for arc end, gas postflow and retracting the wire at its nominal speed,
+    /// s per pass.
     fn delays(&self) -> [f64; 2] {
         let Some(process) = &self.process else { return [0.0; 2] };
         let end = || process.arc_end_delay + process.gas_postflow + retract_time(&self.usual, process);
@@ -398,7 +399,7 @@ impl Torch {
     }
 }
 
-/// Time in which the wire is drawn back at its nominal speed, s.
+/// Time to retract the wire at its nominal speed, s.
 pub fn retract_time(ends: &StartStop, process: &Process) -> f64 {
     ends.wire_retract / (process.wire_feed_speed * 1000.0 / 60.0)
 }

@@ -1,4 +1,4 @@
-//! Why measurements or a library were refused, in sentences for whoever welds.
+//! Why measurements or a library were refused, in sentences for welders.
 
 /// Why measurements, a library or a wish were refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -118,7 +118,7 @@ pub enum LibraryError {
         /// Height, mm.
         height: f64,
     },
-    /// The wish makes no sense in itself: a size that is not above 0, or limits that leave no value.
+    /// The request makes no sense in itself: a size that is not above 0, or limits that leave no value.
     #[error("{reason}")]
     Wish {
         /// What is wrong and what is possible.

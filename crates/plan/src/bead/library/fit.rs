@@ -72,7 +72,7 @@ fn varying(measured: &Measured) -> Result<(Measured, Vec<String>), LibraryError>
     Err(LibraryError::Inputs { reason })
 }
 
-/// How many different values an input has, at most 3.
+/// Number of different values of an input, at most 3.
 fn levels(measured: &Measured, k: usize) -> usize {
     let Input { min, max, .. } = measured.inputs[k];
     let near = |a: f64, b: f64| (a - b).abs() <= SAME_LEVEL * (max - min).max(SAME_LEVEL * max.abs());
@@ -87,7 +87,7 @@ fn terms(measured: &Measured, notes: &mut Vec<String>) -> Result<Vec<Vec<usize>>
     let (bent, straight): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| levels(measured, i) > 2);
     let squares: Vec<Vec<usize>> = bent.iter().map(|&i| vec![i, i]).collect();
     let products: Vec<Vec<usize>> = (0..n).flat_map(|i| (i + 1..n).map(move |j| vec![i, j])).collect();
-    // One bead more than terms, so that something is left over to estimate the error from.
+    // One bead more than terms, so that the error can be estimated.
     let full = first.len() + squares.len() + products.len() + 1;
     if rows <= first.len() {
         return Err(LibraryError::TooFew { rows, inputs: n, needed: first.len() + 1, full });
@@ -111,7 +111,7 @@ fn terms(measured: &Measured, notes: &mut Vec<String>) -> Result<Vec<Vec<usize>>
     Ok(terms)
 }
 
-/// The terms that were kept. A term that depends on others is named in the notes; an input that does is refused.
+/// The terms that were kept. A term that depends on others is dropped with a note; an input that does is refused.
 fn kept(
     inputs: &[Input],
     wanted: &[Vec<usize>],
@@ -136,7 +136,7 @@ fn kept(
     Ok(factored.kept.iter().map(|&k| wanted[k].clone()).collect())
 }
 
-/// Fit and goodness of one response. The leave-one-out errors are residual / (1 − leverage) (PRESS).
+/// Fit and goodness of fit of one response. The leave-one-out errors are residual / (1 − leverage) (PRESS).
 fn response(factored: &Factored, rows: &[Vec<f64>], leverages: &[f64], y: &[f64]) -> Response {
     let coefficients = factored.solve(y);
     let residuals: Vec<f64> = rows.iter().zip(y).map(|(row, y)| y - dot(row, &coefficients)).collect();

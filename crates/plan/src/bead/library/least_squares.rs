@@ -1,4 +1,4 @@
-//! Least squares by Householder reflections, with columns taken one after another.
+//! Least squares by Householder reflections, adding columns one after another.
 //!
 //! A column that depends linearly on earlier ones is left out and reported, so a design with too few measurements in
 //! some direction is fitted with fewer terms instead of wild coefficients.
@@ -54,7 +54,7 @@ impl Factored {
         }
     }
 
-    /// The coefficients with which the kept columns come nearest to `y`.
+    /// The coefficients with which the kept columns best approximate `y`.
     pub(super) fn solve(&self, y: &[f64]) -> Vec<f64> {
         let mut x = y.to_vec();
         self.reflect(&mut x);

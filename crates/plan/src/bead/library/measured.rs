@@ -152,7 +152,7 @@ fn split(text: &str) -> Result<(char, Vec<Record>), LibraryError> {
     Ok((separator, records.collect::<Result<_, LibraryError>>()?))
 }
 
-/// The fields of a line. A quoted field may hold separators; two quotes inside it mean one.
+/// The fields of a line. A quoted field may hold separators; two quotes inside it stand for one.
 fn fields(line: &str, separator: char, number: usize) -> Result<Vec<String>, LibraryError> {
     let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
     let mut letters = line.chars().peekable();

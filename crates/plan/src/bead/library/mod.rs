@@ -9,7 +9,7 @@
 //! | --- | --- |
 //! | `measured` | CSV to measured beads |
 //! | `fit` | which terms the measurements allow, the fit and how good it is |
-//! | `solve` | wanted bead to parameters |
+//! | `solve` | parameters for a wanted bead |
 //! | `demonstration` | invented measurements to try it with |
 //! | `least_squares`, `student` | Householder QR; Student's t |
 
@@ -51,14 +51,14 @@ pub struct Input {
 pub struct Response {
     /// Coefficients of the library's terms, mm.
     pub coefficients: Vec<f64>,
-    /// Share of the variance that the fit explains.
+    /// Fraction of the variance that the fit explains, 0 to 1.
     pub r_squared: f64,
-    /// The same, corrected for the number of terms: less what this many terms would explain by chance.
+    /// The same, adjusted for the number of terms: less what this many terms would explain by chance.
     pub adjusted_r_squared: f64,
     /// Standard deviation of the residuals, mm.
     pub residual: f64,
-    /// Root mean square error of every bead when predicted from all others, mm; absent where one bead alone
-    /// decides a term.
+    /// Root mean square error of every bead when predicted from all others, mm; absent if a single bead determines a
+    /// term.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub leave_one_out: Option<f64>,
 }
@@ -110,16 +110,16 @@ pub struct BeadLibrary {
 pub struct Estimate {
     /// The value, mm.
     pub value: f64,
-    /// Half of the 95 % interval in which the next single bead is expected, mm.
+    /// Half width of the 95 % interval in which the next single bead is expected, mm.
     pub plus_minus: f64,
 }
 
 /// A predicted bead.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Prediction {
-    /// Width.
+    /// Width, mm.
     pub width: Estimate,
-    /// Height.
+    /// Height, mm.
     pub height: Estimate,
     /// Leverage of the point: near 0 it is well supported; at the library's largest leverage it lies at the edge of the
     /// measurements.
@@ -142,7 +142,7 @@ impl BeadLibrary {
     /// Version of the file format that is read and written.
     pub const VERSION: u32 = 1;
 
-    /// The library as TOML; [`parse`](Self::parse) gives it back exactly.
+    /// The library as TOML; [`parse`](Self::parse) restores it exactly.
     pub fn to_toml(&self) -> String {
         let warning = if self.synthetic { "# SYNTHETIC data for demonstration: no bead was measured.\n" } else { "" };
         let head = "# Bead library of Beadwright, made by `beadwright bead fit`. Lengths of beads in mm.\n";
@@ -219,7 +219,7 @@ impl BeadLibrary {
         }
         let coded = self.coded(values);
         let found = self.at(&coded);
-        // Rounding must not shut out the measurements themselves.
+        // Rounding must not exclude the measurements themselves.
         if found.leverage > self.largest_leverage * (1.0 + 1e-9) {
             let distance =
                 |s: &Sample| self.coded(&s.inputs).iter().zip(&coded).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
@@ -238,7 +238,7 @@ impl BeadLibrary {
         Ok(found)
     }
 
-    /// Values in the library's order from names (with or without unit) and values.
+    /// Values in the library's order, from names (with or without unit) and values.
     ///
     /// # Errors
     /// When an input is missing, or a name belongs to no input.
@@ -286,7 +286,7 @@ impl BeadLibrary {
         }
     }
 
-    /// −1 at the least measured value of an input, 1 at the greatest.
+    /// Coded values: −1 at the least measured value of an input, 1 at the greatest.
     fn coded(&self, values: &[f64]) -> Vec<f64> {
         self.inputs.iter().zip(values).map(|(input, &v)| input.coded(v)).collect()
     }
@@ -333,7 +333,7 @@ impl Input {
     }
 }
 
-/// Five significant digits, without zeros at the end.
+/// Five significant digits, without trailing zeros.
 fn rounded(value: f64) -> f64 {
     format!("{value:.4e}").parse().unwrap_or(value)
 }

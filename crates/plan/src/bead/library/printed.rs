@@ -1,29 +1,29 @@
-//! Whether a printed table of process values agrees with itself.
+//! Whether a printed table of process values is consistent.
 //!
-//! A wire is melted nearly in proportion to the current, so bead area times speed per ampere is nearly the same in all rows of
-//! one wire and gas. A row that differs has a misprint, or was welded otherwise than the table says.
+//! A wire melts nearly in proportion to the current, so bead area times speed per ampere is nearly the same in all rows
+//! of one wire and gas. A row that differs is misprinted, or was not welded as the table says.
 
 use super::{Columns, LibraryError, Measured};
 
 /// A row of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrintedRow {
-    /// Area of a bead, mm²: width × height, over the layers where the table counts them.
+    /// Area of a bead, mm²: width × height, divided by the number of layers if the table gives it.
     pub area: f64,
-    /// A
+    /// Current, A.
     pub current: f64,
     /// Deposition speed, mm/s.
     pub speed: f64,
-    /// mm
+    /// Width, mm.
     pub width: f64,
-    /// Metal for each ampere and second, mm³/(A·s).
+    /// Metal per ampere and second, mm³/(A·s).
     pub metal: f64,
-    /// Median of that of the other rows, mm³/(A·s).
+    /// The median of [`Self::metal`] over the other rows, mm³/(A·s).
     pub others: f64,
 }
 
-/// Rows differ in earnest by more than this fraction: melting grows a little faster than the current, and printed figures are
-/// rounded.
+/// Rows that differ by more than this fraction contradict the others: melting grows a little faster than the current,
+/// and printed figures are rounded.
 const DIFFERS: f64 = 0.12;
 
 impl PrintedRow {
@@ -32,7 +32,8 @@ impl PrintedRow {
         (self.metal / self.others - 1.0).abs() > DIFFERS
     }
 
-    /// The speed (mm/s), the width (mm) and the current (A), each of which alone would make the row agree with the others.
+    /// The speed (mm/s), the width (mm) and the current (A) that would each, on its own, make the row agree with the
+    /// others.
     pub fn agreeing(&self) -> (f64, f64, f64) {
         let factor = self.others / self.metal;
         (self.speed * factor, self.width * factor, self.current / factor)
@@ -99,7 +100,7 @@ pub fn printed_rows(text: &str) -> Result<Vec<PrintedRow>, LibraryError> {
     Ok(rows)
 }
 
-/// The middle of some values, or the mean of the two in the middle; NaN of none.
+/// The median of some values; NaN if there are none.
 ///
 /// ```
 /// use bead_plan::bead::library::median;

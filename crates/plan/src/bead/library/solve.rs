@@ -13,17 +13,18 @@ use crate::bead::wall::WallBead;
 
 /// λ = width/height of good beads (Li et al., section 3).
 pub const PREFERRED_RATIOS: (f64, f64) = (2.5, 3.0);
-/// Weights of the pull to the preferred λ and of that to the middle of the range; relative deviations weigh 1.
+/// Weights of the pull to the preferred λ and of the pull to the middle of the range; relative deviations have weight
+/// 1.
 const PULL: (f64, f64) = (1e-4, 1e-5);
 /// Weight of the penalty for leaving the measured region.
 const BARRIER: f64 = 10.0;
-/// Maximum number of points of the grid, and how many of them are followed.
+/// Most points of the grid, and how many of them are followed.
 const GRID: usize = 5000;
 const STARTS: usize = 12;
 /// A coded value this close to a bound counts as lying on it.
 const TOUCHES: f64 = 1e-6;
 
-/// What a layer height means.
+/// How a layer height is to be understood.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Layering {
     /// A wall of one bead per layer: the rise h_n of [`WallBead`].
@@ -64,7 +65,7 @@ pub struct Wish {
     pub width: f64,
     /// Height of a layer, mm.
     pub layer_height: f64,
-    /// What that height means.
+    /// How that height is to be understood.
     pub layering: Layering,
     /// Limits on the inputs.
     pub limits: Vec<Limit>,
@@ -79,7 +80,7 @@ impl Wish {
     }
 }
 
-/// Parameters for a wish.
+/// Parameters that meet a request.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recipe {
     /// One value per input, in the library's order.
@@ -88,7 +89,7 @@ pub struct Recipe {
     pub prediction: Prediction,
     /// Height of its layers, mm.
     pub layer_height: f64,
-    /// What to know about it, as sentences.
+    /// Remarks, as sentences.
     pub notes: Vec<String>,
 }
 
@@ -196,7 +197,7 @@ impl Search<'_> {
         }
     }
 
-    /// The barrier is soft: a point a hair outside is drawn towards the middle of the measurements.
+    /// The barrier is soft: a point slightly outside is drawn towards the middle of the measurements.
     fn brought_in(&self, mut z: Vec<f64>) -> Vec<f64> {
         for _ in 0..200 {
             if self.inside(&z) {
@@ -270,7 +271,7 @@ impl Search<'_> {
         z
     }
 
-    /// One damped step; values at a bound that the step would push further out stay where they are.
+    /// One damped step; values at a bound that the step would push further out are kept.
     fn step(&self, z: &[f64], pull: f64, damping: f64) -> Vec<f64> {
         let residuals = self.residuals(z, pull);
         let mut free: Vec<usize> = (0..z.len()).filter(|&k| self.ranges[k].1 > self.ranges[k].0).collect();

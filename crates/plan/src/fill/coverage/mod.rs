@@ -1,5 +1,5 @@
-//! What beads leave bare, by their footprints: each piece of a path covers half a width to both sides and
-//! around its ends. Measured on rows across the region, exact along each row.
+//! The area that beads leave bare, judged by their footprints: each piece of a path covers half a width on both sides
+//! and around its ends. Measured on rows across the region, exact along each row.
 
 mod strip;
 
@@ -10,45 +10,46 @@ use planar::{Bounds, PerRow, Region};
 use std::ops::Range;
 use strip::{Disc, Span, Strip, union};
 
-/// Rows in a bead's width, and where these are too few.
+/// Rows per bead width, and the number used if those are too few.
 const ROWS: [f64; 2] = [6.0, 12.0];
-/// They are too few where more than this part of a region is bare, since strips thinner than their distance then matter.
+/// They are too few if more than this fraction of a region is bare, since strips thinner than the row spacing then
+/// matter.
 const MUCH: f64 = 0.03;
-/// The rows are slanted, radians, since beads or edges along them would be counted in whole rows: at the first of these angles
-/// at which they measure the region itself [`WELL`] and none of its edges runs along them, or at the best one. Few of them lie
-/// along the edges of the same regular polygon.
+/// The rows are slanted, radians, since beads or edges along them would be counted in whole rows: at the first of these
+/// angles at which they measure the region itself to within [`WELL`] and none of its edges runs along them, or at the
+/// best one. Few of the angles coincide with edges of one regular polygon.
 const ASLANT: [f64; 4] = [0.3, 1.32, 0.65, 1.75];
-/// Fraction of a region's area.
+/// Greatest error, as a fraction of a region's area.
 const WELL: f64 = 0.002;
-/// An edge runs along the rows if it crosses fewer than the first and reaches over more than the second number of them.
+/// An edge runs along the rows if it crosses fewer of them than the first number and extends over more than the second.
 const ALONG: [f64; 2] = [2.0, 8.0];
-/// Beads count as wider by this fraction: neighbours that just touch leave nothing.
+/// Beads count as wider by this fraction, so that neighbours that just touch leave nothing bare.
 const TOUCHING: f64 = 0.01;
 
 /// The part of a region that no bead covers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bare {
-    /// mm²
+    /// Bare area, mm².
     pub area: f64,
     /// Middle of its widest place, mm.
     pub place: DVec2,
 }
 
-/// What passes leave bare of a region; `width` is the nominal bead's, mm.
+/// What passes leave bare of a region; `width` is the nominal bead width, mm.
 pub fn bare(paths: &[&Path], region: &Region, width: f64) -> Bare {
     Coverage::of(paths, region, width).map_or_else(Bare::default, |coverage| coverage.bare())
 }
 
-/// What passes cover, on rows across a region.
+/// The area that passes cover, on rows across a region.
 pub struct Coverage {
     grid: Grid,
     /// Where the rows cross the boundary of the region.
     inside: PerRow<f64>,
-    /// Of each row, by where they begin.
+    /// The covered spans of each row, ordered by where they begin.
     covered: PerRow<Span>,
 }
 
-/// Where the rows lie.
+/// Position of the rows.
 #[derive(Debug, Clone, Copy)]
 struct Grid {
     /// The angle at which they run, radians.
@@ -60,7 +61,7 @@ struct Grid {
 }
 
 impl Grid {
-    /// Rows across a region at an angle, radians, this far apart or a little less, mm; `None` for an empty region.
+    /// Rows across a region at an angle, radians, at most this far apart, mm; `None` for an empty region.
     fn at(angle: f64, region: &Region, apart: f64) -> Option<Self> {
         let turn = DVec2::from_angle(-angle);
         let points = region.polygons().iter().flat_map(|island| island.outer.points());
@@ -98,7 +99,7 @@ impl Grid {
         edges.filter(|edge| edge.y < few && edge.x > many).map(|edge| edge.x).sum()
     }
 
-    /// The rows that suit a region, and where they cross its boundary.
+    /// The best rows for a region, and where they cross its boundary.
     fn across(region: &Region, apart: f64) -> Option<(Self, PerRow<f64>)> {
         let area = region.area();
         let mut best: Option<(f64, Self, PerRow<f64>)> = None;
@@ -119,7 +120,7 @@ impl Grid {
 }
 
 impl Coverage {
-    /// What passes cover where a region lies; `width` is the nominal bead's, mm. `None` for an empty region.
+    /// The area that passes cover within a region; `width` is the nominal bead width, mm. `None` for an empty region.
     pub fn of(paths: &[&Path], region: &Region, width: f64) -> Option<Self> {
         let [coarse, fine] = ROWS.map(|rows| width / rows);
         let found = Self::on_rows(paths, region, coarse)?;
@@ -150,8 +151,8 @@ impl Coverage {
         self.bare_between(&self.grid.part(&rows).rows(region), rows.start)
     }
 
-    /// What is left bare between the first and the second place on each row from a number on, the third and the fourth, and
-    /// so on.
+    /// What is left bare between the first and the second position on each row, the third and the fourth, and so on;
+    /// `inside` starts at row number `from`.
     fn bare_between(&self, inside: &PerRow<f64>, from: usize) -> Bare {
         let Grid { angle, first, step, .. } = self.grid;
         let (mut found, mut widest) = (Bare::default(), 0.0);
@@ -171,7 +172,7 @@ impl Coverage {
     }
 }
 
-/// What sorted spans leave bare of one.
+/// The gaps that sorted spans leave in a span.
 fn gaps(span: Range<f64>, covered: &[Span]) -> impl Iterator<Item = Range<f64>> {
     let mut from = span.start;
     let before_end = covered.iter().copied().take_while(move |(low, _)| *low < span.end);
@@ -182,31 +183,31 @@ fn gaps(span: Range<f64>, covered: &[Span]) -> impl Iterator<Item = Range<f64>> 
     })
 }
 
-/// What is covered of each row, so far.
+/// Covered spans of each row, being collected.
 struct Rows {
     /// Height of the first row and distance between the rows, mm.
     first: f64,
     step: f64,
-    /// Rows in a millimetre.
+    /// Rows per millimetre.
     per_mm: f64,
-    /// The last span of each row, and those before it.
+    /// The last span of each row, and the earlier ones.
     last: Vec<Span>,
     before: Vec<(u32, Span)>,
     /// Where the run in progress begins on each row.
     starts: Vec<f64>,
 }
 
-/// The last span of a row of which nothing is covered yet.
+/// The last span of a row on which nothing is covered yet.
 const NOWHERE: Span = (f64::INFINITY, f64::NEG_INFINITY);
 
 /// Parallel strips, each overlapping the one before: the scan lines of a zigzag. On a row that crosses several of them
-/// only the outer sides of the first and of the last matter, so a line costs as much as its rows differ from its
-/// neighbour's.
+/// only the outer sides of the first and the last matter, so the cost of a line is the number of rows in which it
+/// differs from its neighbour.
 struct Run {
     last: Strip,
     /// Rows that cross both long sides of the last strip.
     rows: Range<usize>,
-    /// Whether the strips follow each other towards greater x; unknown for one alone.
+    /// Whether each strip lies at greater x than the one before; unknown for a single strip.
     rising: Option<bool>,
 }
 
@@ -236,8 +237,8 @@ impl Rows {
         }
     }
 
-    /// The strips that the pieces of a line cover. Where it bends a little they reach on until they meet outside; where it
-    /// bends more or its width changes, and at its ends, it covers a disc.
+    /// The strips covered by the pieces of a line. Where the line bends a little they are extended until they meet on
+    /// the outside; where it bends more or its width changes, and at its ends, it covers a disc.
     fn strips(&mut self, line: &[DVec2], closed: bool, width: &Along) -> Vec<Strip> {
         let radius = |i: usize| width.after(i) * (0.5 + TOUCHING / 2.0);
         let again = closed.then(|| line.first()).flatten();
@@ -257,7 +258,7 @@ impl Rows {
         strips
     }
 
-    /// Covers what a strip and the one that follows it leave between them.
+    /// Covers the gap between a strip and the one that follows it.
     fn join(&mut self, strips: &mut [Strip], one: usize, other: usize) {
         let (into, out) = (strips[one], strips[other]);
         let (sine, cosine) = (into.way.perp_dot(out.way), into.way.dot(out.way));
@@ -272,7 +273,7 @@ impl Rows {
         }
     }
 
-    /// Rounds an end of a strip: for a short one with the strip itself, otherwise at once.
+    /// Rounds an end of a strip: for a short one together with the strip, otherwise at once.
     fn end(&mut self, strip: &mut Strip, end: usize) {
         if strip.is_short() {
             strip.round[end] = true;
@@ -283,7 +284,7 @@ impl Rows {
 
     /// The rows from one height to another.
     fn within(&self, (low, high): (f64, f64)) -> Range<usize> {
-        // The first row above a height; casts round down what is not negative.
+        // The first row above a height; casts round down, as the values are not negative.
         let from = |y: f64| ((y - self.first) * self.per_mm + 1.0).max(0.0) as usize;
         let to = from(high).min(self.last.len());
         from(low).min(to)..to
@@ -317,7 +318,7 @@ impl Rows {
         }
     }
 
-    /// Adds a span to those of a row. Neighbouring passes are laid one after another, so most spans continue the last one.
+    /// Adds a span to a row. Neighbouring passes are laid consecutively, so most spans extend the last one.
     fn add(&mut self, row: usize, (low, high): Span) {
         let last = &mut self.last[row];
         if low <= last.1 && high >= last.0 {
@@ -339,7 +340,7 @@ impl Rows {
         covered
     }
 
-    /// Adds a strip to a run, or begins another run where it does not continue this one.
+    /// Adds a strip to a run, or begins a new run if the strip does not continue it.
     fn go_on(&mut self, run: Run, strip: Strip, rows: Range<usize>) -> Run {
         let rising = run.last.beside(&strip).filter(|rising| run.rising.is_none_or(|so_far| so_far == *rising));
         let Some(rising) = rising else {
@@ -360,7 +361,7 @@ impl Rows {
         Run { last: strip, rows, rising: Some(rising) }
     }
 
-    /// Notes where a run begins on some rows.
+    /// Records where a run begins on some rows.
     fn open(&mut self, strip: &Strip, rows: Range<usize>, rising: bool) {
         let sides = strip.sides();
         for row in rows {

@@ -2,13 +2,13 @@
 
 use glam::DVec2;
 
-/// From one place on a row to another, mm.
+/// From one position on a row to another, mm.
 pub(super) type Span = (f64, f64);
 
 /// Shorter pieces are covered one by one, in radii: they link scan lines, whose run continues after them.
 const SHORT: f64 = 8.0;
 
-/// Strips of a run overlap by at least this fraction of their width, and lean alike to within this fraction of it.
+/// Strips of a run overlap by at least this fraction of their width, and are parallel to within this fraction of it.
 const OVERLAP: f64 = 1e-3;
 
 /// The strip that a straight piece covers.
@@ -19,9 +19,9 @@ pub(super) struct Strip {
     pub(super) way: DVec2,
     pub(super) length: f64,
     pub(super) radius: f64,
-    /// How far it reaches beyond both ends.
+    /// How far it extends beyond both ends, mm.
     pub(super) on: [f64; 2],
-    /// Whether these are round.
+    /// Whether its ends are round.
     pub(super) round: [bool; 2],
 }
 
@@ -47,7 +47,7 @@ impl Strip {
         self.length < SHORT * self.radius
     }
 
-    /// Its lowest and its highest place.
+    /// Its lowest and highest y.
     pub(super) fn all(&self) -> (f64, f64) {
         let (low, high) = self.along();
         let [one, other] = self.round;
@@ -62,19 +62,19 @@ impl Strip {
         (low + across, high - across)
     }
 
-    /// The lowest and the highest place of its middle.
+    /// The lowest and highest y of its centre-line.
     pub(super) fn along(&self) -> (f64, f64) {
         let (a, b) = (self.from.y - self.on[0] * self.way.y, self.from.y + (self.length + self.on[1]) * self.way.y);
         (a.min(b), a.max(b))
     }
 
-    /// What lies between its long sides.
+    /// The area between its long sides.
     pub(super) fn sides(&self) -> Slab {
         let half = self.radius / self.way.y.abs();
         Slab { y: self.from.y, low: self.from.x - half, high: self.from.x + half, lean: self.way.x / self.way.y }
     }
 
-    /// What lies between its ends.
+    /// The area between its ends.
     pub(super) fn between_ends(&self) -> Slab {
         let (a, b) = (-self.on[0] / self.way.x, (self.length + self.on[1]) / self.way.x);
         Slab {
@@ -85,7 +85,8 @@ impl Strip {
         }
     }
 
-    /// Whether another strip lies next to this one, parallel, equally wide, and overlapping: then, whether towards greater x.
+    /// Whether another strip is adjacent to this one: parallel, equally wide and overlapping; then, whether it is at
+    /// greater x.
     pub(super) fn beside(&self, other: &Self) -> Option<bool> {
         let reach = self.length.max(other.length) + self.from.distance(other.from);
         let parallel = self.way.perp_dot(other.way).abs() * reach < OVERLAP * self.radius;
@@ -106,25 +107,25 @@ impl Disc {
     #[inline]
     pub(super) fn on(&self, y: f64) -> Span {
         let up = y - self.middle.y;
-        // Not a number where the row misses it.
+        // NaN where the row misses it.
         let half = (self.radius * self.radius - up * up).sqrt();
         (self.middle.x - half, self.middle.x + half)
     }
 }
 
-/// From the lower place of two spans to the higher one; what is not a number is passed over.
+/// The span from the lower end of two spans to the higher end; NaN is ignored.
 #[inline]
 pub(super) fn union(a: Span, b: Span) -> Span {
     (a.0.min(b.0), a.1.max(b.1))
 }
 
-/// What lies between two parallel lines.
+/// The area between two parallel lines.
 pub(super) struct Slab {
-    /// The height at which it reaches from `low` to `high`.
+    /// The y at which it extends from `low` to `high`.
     pub(super) y: f64,
     pub(super) low: f64,
     pub(super) high: f64,
-    /// How it shifts with the height.
+    /// Its shift in x per unit of y.
     pub(super) lean: f64,
 }
 
@@ -135,11 +136,11 @@ impl Slab {
         (self.low + moved, self.high + moved)
     }
 
-    /// What it has in common with another on a row that meets both.
+    /// Its intersection with another slab on a row that meets both.
     #[inline]
     pub(super) fn meet(&self, other: &Self, y: f64) -> Span {
         let (a, b) = (self.at(y), other.at(y));
-        // Lines along the row have no place on it, and are passed over.
+        // Lines along the row have no position on it (NaN) and are ignored.
         (a.0.max(b.0), a.1.min(b.1))
     }
 }

@@ -1,6 +1,6 @@
-//! Widths that follow the room: where neighbours lie farther apart or closer than a stepover, each bead takes half the
-//! distance to its neighbour on either side, within the limits of the process. Metal is laid where there is room for
-//! it, and small gaps close without a bead of their own.
+//! Widths adapted to the available space: where neighbours lie farther apart or closer than a stepover, each bead takes
+//! half the distance to its neighbour on either side, within the limits of the process. Metal is laid where there is
+//! space for it, and small gaps close without a bead of their own.
 
 use crate::fill::line_index::{LineIndex, Sight};
 use crate::fill::{FillSettings, Path};
@@ -10,14 +10,15 @@ use planar::Polygon;
 
 /// Neighbours are searched for up to this far away, in stepovers; a side without one counts as a stepover.
 const SIGHT: f64 = 1.6;
-/// Distance between the places where the width is set, in bead widths.
+/// Distance between the points at which the width is set, in bead widths.
 const STEP: f64 = 0.35;
-/// Widths are multiples of this fraction of a bead width, so that the speed seldom changes.
+/// Widths are multiples of this fraction of a bead width, so that the speed changes seldom.
 const GRAIN: f64 = 0.05;
 /// Represents the outline among the numbers of the passes.
 const OUTLINE: usize = usize::MAX;
 
-/// Gives every pass the widths that its neighbours leave room for; no bead reaches beyond the island and its allowance.
+/// Gives every pass the widths for which its neighbours leave space; no bead reaches beyond the island and its
+/// allowance.
 pub fn widths(passes: &mut [Path], island: &Polygon, settings: &FillSettings) {
     let mut near = LineIndex::new(SIGHT * settings.stepover);
     for (number, pass) in passes.iter().enumerate() {
@@ -57,7 +58,7 @@ fn adapt(number: usize, pass: &mut Path, near: &LineIndex, settings: &FillSettin
                         high = high.min(2.0 * reach + 1e-3);
                         if pass.kind == PassKind::Skeleton { reach * d / settings.bead.width } else { d / 2.0 }
                     }
-                    // Both legs of a sharp corner share the room between them; along the edge, the tip would stay bare.
+                    // Both legs of a sharp corner share the space between them; at the edge, the tip would stay bare.
                     Some(Sight { line, piece, .. }) if at_edge && line == number && piece.abs_diff(k) <= 1 => d / 2.0,
                     Some(Sight { distance, .. }) => distance / 2.0,
                     None => d / 2.0,

@@ -1,8 +1,8 @@
 //! Contours joined into few passes.
 //!
-//! Complete contours are joined from outside in: each is opened at its seam and led to the next by an oblique link of
-//! about 45°. Incomplete ones are joined from inside out: the end of a piece is led to the nearest end of a piece one
-//! level away. A link stays inside the outline and crosses nothing.
+//! Complete contours are joined from outside in: each is opened at its seam and connected to the next by an oblique
+//! link of about 45°. Incomplete ones are joined from inside out: the end of a piece is connected to the nearest end of
+//! a piece one level away. A link stays inside the outline and crosses nothing.
 
 use super::contours::{Contours, Piece};
 use crate::fill::line_index::LineIndex;
@@ -16,13 +16,13 @@ use planar::{Region, Ring};
 const LONGEST_RING_LINK: f64 = 2.2;
 /// Maximum length of a link between the ends of pieces, in stepovers.
 const LONGEST_END_LINK: f64 = 3.2;
-/// A ring is left this far before its seam, and the next one is entered far enough past the seam to make the link 45°;
-/// in stepovers.
+/// A ring is left this far before its seam, and the next one entered far enough past the seam to make the link 45°; in
+/// stepovers.
 const LEFT_OPEN: f64 = 0.55;
 /// The golden ratio spreads the seams of successive layers: no two of them come near each other for many layers.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
-/// Places tried for the seam of a chain, so that it does not fall on a corner.
+/// Positions tried for the seam of a chain, so that it does not fall on a corner.
 const SEAMS: usize = 12;
 
 /// Joins all contours.
@@ -77,7 +77,7 @@ fn chain(
     chain
 }
 
-/// The ring one level further in that can be linked to the end of this one, and where it is entered.
+/// The ring one level further in that can be linked to the end of this one, and the point where it is entered.
 fn next_ring(
     at: usize,
     seam: DVec2,
@@ -116,7 +116,7 @@ fn pass(chain: &[(usize, DVec2)], rings: &[(usize, Ring)], settings: &FillSettin
 
 /// Whether a link crosses no contour; it may end on them.
 fn is_clear(link: [DVec2; 2], laid: &LineIndex) -> bool {
-    // Shortened by a hair at both ends, so that the contours it joins do not count.
+    // Slightly shortened at both ends, so that the contours it joins do not count.
     !laid.crosses(link[0].lerp(link[1], 1e-3), link[1].lerp(link[0], 1e-3))
 }
 
@@ -147,7 +147,7 @@ fn join_incomplete(pieces: &[Piece], laid: &LineIndex, outermost: &Region, setti
     passes
 }
 
-/// The free piece one level away with the end nearest to the end of the line, and whether it must be reversed.
+/// The free piece, one level away, with the end nearest to the end of the line, and whether it must be reversed.
 fn next_piece(
     points: &[DVec2],
     level: usize,
@@ -168,13 +168,13 @@ fn next_piece(
     near.into_iter().find(|(_, _, p)| fits(*p)).map(|(i, reversed, _)| (i, reversed))
 }
 
-/// The place at a fraction of a ring's length.
+/// The point at a fraction of a ring's length.
 fn place_at(ring: &Ring, fraction: f64) -> DVec2 {
     let line: Vec<DVec2> = ring.points().iter().chain(ring.points().first()).copied().collect();
     point_at(&line, ring.length() * fraction).unwrap_or_default()
 }
 
-/// The points of a ring from a place on it onwards; the place itself comes first.
+/// The points of a ring from a point on it onwards; that point comes first.
 fn turned_to(ring: &Ring, place: DVec2) -> Vec<DVec2> {
     let distance = |(a, b): (DVec2, DVec2)| planar::polyline::distance_squared_to_segment(place, a, b);
     let nearest = ring.edges().enumerate().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1))).map_or(0, |e| e.0);
@@ -185,7 +185,7 @@ fn turned_to(ring: &Ring, place: DVec2) -> Vec<DVec2> {
     turned
 }
 
-/// The place a little further on along a ring.
+/// The point `by` mm further on along a ring.
 fn advanced(ring: &Ring, place: DVec2, by: f64) -> DVec2 {
     point_at(&turned_to(ring, place), by).unwrap_or(place)
 }

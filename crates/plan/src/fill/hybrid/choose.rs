@@ -1,6 +1,7 @@
-//! Which skeleton regions are filled, how deep pockets are searched for and how far sharp corners are drawn out. No one
-//! choice serves all shapes, so several are tried and the deposit model judges them: the best one leaves the least void
-//! while it overfills little more than plain contours do. Depth and reach are varied only where the settings leave them open.
+//! Which skeleton regions are filled, how deep pockets are searched for and how far sharp corners are extended. No
+//! single choice suits all shapes, so several are tried and the deposit model judges them: the best one leaves the
+//! least void while overfilling little more than plain contours do. Depth and reach are varied only if the settings
+//! leave them open.
 
 use super::pockets::{self, Level};
 use super::{HybridSettings, Steps};
@@ -18,10 +19,10 @@ const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
 const DEPTHS: [f64; 2] = [1.0, 1.5];
 /// Reaches of corners that are tried. The regions are chosen with the first one, the others are tried on the best.
 const REACHES: [f64; 3] = [0.4, 0.9, 1.0];
-/// Overfill may exceed that of contours by this many percentage points of the judged area. The goal is two; grids of few
-/// points are less exact.
+/// Overfill may exceed that of contours by this many percentage points of the judged area. The goal is two; coarse
+/// grids are less exact.
 const MORE_OVERFILL: f64 = 1.9;
-/// Overfill beyond that counts this many times as much as void.
+/// Weight of overfill beyond that, relative to void.
 const EXCESS: f64 = 2.0;
 /// Grid points across a bead: half as many as for a verdict.
 const POINTS_ACROSS: f64 = 10.0;
@@ -44,7 +45,7 @@ pub(super) fn best(island: &Polygon, settings: &FillSettings) -> Steps {
     std::iter::once(best).chain(entries).min_by(Entry::against).map(|best| best.steps).unwrap_or_default()
 }
 
-/// What is to be tried.
+/// A candidate.
 #[derive(Clone)]
 struct Idea<'a> {
     settings: FillSettings<'a>,
@@ -54,7 +55,7 @@ struct Idea<'a> {
 }
 
 impl Idea<'_> {
-    /// Whether only pockets that are not filled differ.
+    /// Whether it differs only in pockets that are not filled.
     fn lays_the_same(&self, other: &Self) -> bool {
         let contours = |idea: &Self| idea.levels.iter().map(|level| level.region.clone()).collect::<Vec<_>>();
         self.regions == other.regions && contours(self) == contours(other)
@@ -66,10 +67,10 @@ impl Idea<'_> {
     }
 }
 
-/// What was tried, and the verdict.
+/// A candidate that was tried, and its verdict.
 struct Entry {
     steps: Steps,
-    /// Void, and overfill beyond the limit, % of the judged area.
+    /// Void plus weighted overfill beyond the limit, % of the judged area.
     cost: f64,
 }
 
@@ -79,14 +80,14 @@ impl Entry {
     }
 }
 
-/// How entries for an island are judged.
+/// How candidates for an island are judged.
 struct Contest<'a> {
     island: &'a Polygon,
     settings: &'a FillSettings<'a>,
     outermost: Region,
-    /// Passes that contours alone would have: no entry has more.
+    /// Number of passes with contours alone: no candidate may have more.
     most: usize,
-    /// Overfill that costs nothing, % of the judged area.
+    /// Overfill without cost, % of the judged area.
     limit: f64,
 }
 
@@ -97,7 +98,7 @@ impl<'a> Contest<'a> {
         Self { island, settings, outermost: settings.outermost(island), most: contours.len(), limit }
     }
 
-    /// What is tried with pockets of a depth, mm, and a reach of corners.
+    /// The candidates for a pocket depth, mm, and a reach of corners.
     fn ideas(&self, pocket_depth: f64, tip_reach: f64) -> Vec<Idea<'a>> {
         let hybrid = HybridSettings { pocket_depth, tip_reach, ..self.settings.hybrid };
         let settings = FillSettings { hybrid, ..*self.settings };
@@ -124,7 +125,7 @@ impl<'a> Contest<'a> {
 /// What the deposit model says about passes in an island.
 fn judged<'a>(island: &Polygon, passes: impl IntoIterator<Item = &'a Path>, settings: &FillSettings) -> Figures {
     let bead = settings.bead;
-    // Heights depend on the ratio of paces only.
+    // Heights depend only on ratios of paces.
     let nominal = Nominal { bead, pace: 1.0, rise: bead.rise(settings.stepover) };
     let step = bead.width / POINTS_ACROSS;
     let limits = DepositSettings { step, ..DepositSettings::new(nominal, settings.machining_allowance) };

@@ -1,4 +1,4 @@
-//! Contours, and where skeleton regions cut them.
+//! Contours, and their cuts at skeleton regions.
 
 use super::pockets::Level;
 use crate::fill::FillSettings;
@@ -6,7 +6,7 @@ use glam::DVec2;
 use planar::clip::Keep;
 use planar::{Region, Ring};
 
-/// A piece of a contour that remains where skeleton regions cut it.
+/// A piece of a contour that remains between cuts at skeleton regions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
     /// Number of the contour, counted inwards from 0.
@@ -20,14 +20,14 @@ pub struct Piece {
 pub struct Contours {
     /// Contours that are not cut, with their level.
     pub complete: Vec<(usize, Ring)>,
-    /// What is left of the cut ones.
+    /// What remains of the cut ones.
     pub incomplete: Vec<Piece>,
 }
 
 /// Cuts the contours of all levels where they run inside a skeleton region. By default the outermost one gives the
 /// shape and is cut only where the part is as thin as one bead.
 pub fn cut(levels: &[Level], regions: &Region, settings: &FillSettings) -> Contours {
-    // The sides of a pocket lie on the contour itself: a little more is cut.
+    // The sides of a pocket lie on the contour itself, so cut slightly more.
     let knife = regions.offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join());
     let mut contours = Contours::default();
     for (index, level) in levels.iter().enumerate() {
@@ -76,12 +76,12 @@ fn join_at(first: DVec2, pieces: &mut Vec<Vec<DVec2>>) {
 /// Where two sides of the outermost contour would be closer together than this, in stepovers, one bead is laid along the middle.
 const THIN: f64 = 0.6;
 
-/// The places, long enough for a pass, where both sides of a contour lie too close together.
+/// The areas, long enough for a pass, where both sides of a contour lie too close together.
 fn thin(region: &Region, settings: &FillSettings) -> Region {
     let r = THIN / 2.0 * settings.stepover;
     let open = region.offset(-r, settings.hybrid.join()).offset(r + settings.hybrid.tolerance, settings.hybrid.join());
     let mut thin = region.difference(&open).into_polygons();
-    // The outline of a piece without width is twice its length; its bead keeps away from both ends of the contour.
+    // The outline of a piece without width is twice its length; its bead stays clear of both ends of the contour.
     let shortest = settings.min_pass_length + 2.0 * settings.hybrid.least_gap;
     thin.retain(|piece| piece.outer.length() >= 2.0 * shortest);
     Region::from_normalised(thin).offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join())
@@ -91,7 +91,7 @@ fn thin(region: &Region, settings: &FillSettings) -> Region {
 const CAP: f64 = 0.9;
 
 /// A contour without the tips of corners sharper than 60°: there the metal of both legs would pile up, while a void
-/// stays between the tips of neighbouring contours. The room beyond gets a bead of its own.
+/// would remain between the tips of neighbouring contours. The space beyond gets a bead of its own.
 fn capped(region: &Region, settings: &FillSettings) -> Region {
     let r = CAP / 2.0 * settings.stepover;
     let blunt = region.offset(-r, settings.hybrid.join()).offset(r + settings.hybrid.tolerance, settings.hybrid.join());
@@ -102,19 +102,20 @@ fn capped(region: &Region, settings: &FillSettings) -> Region {
     if tips.is_empty() {
         return region.clone();
     }
-    // A tip's sides lie on the contour itself: cutting a hair more leaves no needle of them.
+    // The sides of a tip lie on the contour itself: cutting slightly more leaves no slivers.
     let knife = Region::from_normalised(tips).offset(4.0 * settings.hybrid.tolerance, settings.hybrid.join());
     region.difference(&knife)
 }
 
-/// Corners sharper than this are drawn out: cos of the turn from leg to leg, 75°.
+/// Corners sharper than this are extended: cosine of the turn from leg to leg, 75°.
 const SHARP: f64 = 0.26;
-/// A corner is drawn out along this much of its legs, in stepovers.
+/// A corner is extended along this length of its legs, in stepovers.
 const LEG: f64 = 1.2;
 
-/// A ring whose sharp corners reach out towards the next ring outside. The tips of two rings lie d/sin(θ/2) apart. The
-/// outer ring fills this up to where its legs are 0.84 w apart, the inner one the last 0.45 d in front of its tip. What
-/// is left in between is a void, while the metal of both legs piles up at the tip: so the tip is moved out into it.
+/// A ring whose sharp corners are extended towards the next ring outside. The tips of two rings lie d/sin(θ/2) apart.
+/// The outer ring fills this up to where its legs are 0.84 w apart, the inner one the last 0.45 d in front of its tip.
+/// What remains in between is a void, while the metal of both legs piles up at the tip: so the tip is moved out into
+/// it.
 fn drawn_out(ring: &Ring, settings: &FillSettings) -> Ring {
     let (points, d) = (ring.points(), settings.stepover);
     let n = points.len();
@@ -137,7 +138,7 @@ fn drawn_out(ring: &Ring, settings: &FillSettings) -> Ring {
     if tips.is_empty() || settings.hybrid.tip_reach == 0.0 {
         return ring.clone();
     }
-    // The drawn-out legs of two corners must not overlap.
+    // The extended legs of two corners must not overlap.
     let apart = |i: usize, j: usize| (stations[j] - stations[i]).rem_euclid(length);
     let room = |k: usize| {
         let (last, next) = (tips[(k + tips.len() - 1) % tips.len()], tips[(k + 1) % tips.len()]);

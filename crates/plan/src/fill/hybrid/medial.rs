@@ -1,9 +1,9 @@
 //! Beads along the medial axis of narrow pieces.
 //!
-//! A piece keeps the least gap from the contours around it, so from contour to contour the room across it is
-//! W = thickness + 2 gap. In it n = round(W/d) − 1 beads, at least one, are spread evenly, W/(n + 1) apart. The
-//! contours fill half a stepover on each side, so each of the n beads fills (W − d)/n. Its width follows from that,
-//! within the limits of the process, and the speed keeps the bead height.
+//! A piece keeps the least gap from the contours around it, so the space across it from contour to contour is W =
+//! thickness + 2 gap. In it n = round(W/d) − 1 beads, at least one, are spread evenly, W/(n + 1) apart. The contours
+//! fill half a stepover on each side, so each of the n beads fills (W − d)/n. Its width follows from that, within the
+//! limits of the process, and the speed keeps the bead height.
 
 use crate::fill::line_index::LineIndex;
 use crate::fill::{FillSettings, Path};
@@ -18,7 +18,7 @@ use std::ops::Range;
 const SAMPLES: f64 = 8.0;
 /// Points of a pass are at least this fraction of a bead width apart.
 const POINT_STEP: f64 = 0.2;
-/// Stretches with a different number of beads are at least this long, in bead widths.
+/// Least length of a section with another number of beads, in bead widths.
 const SHORTEST_RUN: f64 = 1.5;
 /// Ends closer together than this are joined, in stepovers.
 const JOIN: f64 = 1.6;
@@ -42,7 +42,7 @@ pub fn beads(piece: &Polygon, outermost: &Region, laid: &mut LineIndex, settings
     free.map(|line| line.pass()).collect()
 }
 
-/// The longest stretch of a line that crosses neither laid lines nor itself; it is added to `laid`.
+/// The longest section of a line that crosses neither laid lines nor itself; it is added to `laid`.
 fn uncrossed(mut line: Line, laid: &mut LineIndex) -> Option<Line> {
     let closed = std::mem::take(&mut line.closed);
     if closed {
@@ -75,15 +75,15 @@ fn uncrossed(mut line: Line, laid: &mut LineIndex) -> Option<Line> {
     (line.points.len() >= 2).then_some(line)
 }
 
-/// Whether a ladder only separates two forks: the lines that meet there turn around this knot, and the room left in its
+/// Whether a ladder only separates two forks: the lines that meet there go around this knot, and the space left in its
 /// middle is filled later.
 fn is_knot(ladder: &Ladder) -> bool {
     let widest = ladder.rungs.iter().map(|rung| rung.thickness).fold(0.0, f64::max);
     ladder.free == [false, false] && !ladder.closed && ladder.length() < widest
 }
 
-/// A line across a piece that has no axis to speak of, from its farthest corner through its middle; none where it would
-/// be too short.
+/// A line across a piece without a useful axis, from its farthest corner through its middle; `None` if it would be too
+/// short.
 fn across(piece: &Polygon, outermost: &Region, settings: &FillSettings) -> Option<Line> {
     let middle = piece.outer.centroid()?;
     let far = |a: &&DVec2, b: &&DVec2| a.distance_squared(middle).total_cmp(&b.distance_squared(middle));
@@ -94,7 +94,7 @@ fn across(piece: &Polygon, outermost: &Region, settings: &FillSettings) -> Optio
         return None;
     }
     let from = middle + way * reach;
-    // It may reach a little out of the piece, to be long enough.
+    // It may extend slightly beyond the piece, to be long enough.
     let (length, middle) = (to.distance(from), (to + from) / 2.0);
     let half = (to - middle) * (1.001 * settings.min_pass_length / length).max(1.0);
     if length < SHORTEST_PART * settings.min_pass_length {
@@ -140,7 +140,7 @@ struct Line {
 impl Line {
     fn pass(self) -> Path {
         let mut widths = self.widths.clone();
-        // Up to the next point the mean of both widths holds.
+        // From each point to the next, the mean of both widths applies.
         let next = self.widths.iter().cycle().skip(1);
         let last = if self.closed { widths.len() } else { widths.len().saturating_sub(1) };
         widths.iter_mut().zip(next).take(last).for_each(|(width, next)| *width = (*width + next) / 2.0);
@@ -196,7 +196,7 @@ fn thinned(ladder: &Ladder, step: f64) -> Vec<Rung> {
     rungs
 }
 
-/// Number of beads across each rung; stretches too short to be worth a change take the neighbouring number.
+/// Number of beads across each rung; sections too short to be worth a change take the neighbouring number.
 fn counts(rungs: &[Rung], settings: &FillSettings) -> Vec<usize> {
     let across = |rung: &Rung| rung.thickness + 2.0 * settings.hybrid.least_gap;
     let count = |rung: &Rung| ((across(rung) / settings.stepover - 1.0).round().max(1.0)) as usize;
@@ -220,7 +220,7 @@ fn counts(rungs: &[Rung], settings: &FillSettings) -> Vec<usize> {
     counts
 }
 
-/// Stretches of equal values.
+/// Sections of equal values.
 fn runs(counts: &[usize]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (i, count) in counts.iter().enumerate() {
@@ -260,7 +260,7 @@ fn extend(line: &mut Line, free: [bool; 2], piece: &Polygon, settings: &FillSett
     let ends: f64 = free.iter().map(|f| if *f { 2.0 * beyond } else { 0.0 }).sum();
     let beyond = if first + ends < settings.min_pass_length { 0.0 } else { beyond };
     for (k, free) in free.into_iter().enumerate() {
-        // Both ends are handled as the last one.
+        // Both ends are handled as the last one, by reversing.
         if k == 0 {
             line.reverse();
         }
@@ -290,10 +290,10 @@ fn hit(piece: &Polygon, from: DVec2, way: DVec2) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// Cosine of the turn at which a link runs back along the line that it leaves.
+/// Cosine of the turn beyond which a link runs back along the line that it leaves.
 const BACK: f64 = -0.9;
 
-/// Whether a link from an end of a line to a place would lie on the line itself.
+/// Whether a link from an end of a line to a point would lie on the line itself.
 fn runs_back(line: &Line, last: bool, to: DVec2) -> bool {
     let way = match line.points[..] {
         [.., a, b] if last => (a, b),

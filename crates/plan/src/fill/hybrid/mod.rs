@@ -9,8 +9,8 @@
 //! | contours cut at the regions | [`contours`] | 1.3 (1)–(2) |
 //! | contours joined into chains | [`chain`] | 1.3 (3)–(4) |
 //! | regions filled | [`skeleton`] | 1.2 |
-//! | widths that follow the room (ours) | [`adapt`] | |
-//! | what serves a shape best (ours) | `choose` | |
+//! | widths adapted to the available space (ours) | [`adapt`] | |
+//! | choosing what suits a shape best (ours) | `choose` | |
 //!
 //! Joins are round in both modes. In the paper square corners survive moving in and back out, as with mitred joins; with
 //! round ones their pocket is 0.44 w long and its filter drops it. Mitred joins of any limit break its propeller into 16 to
@@ -92,7 +92,7 @@ pub struct HybridSettings {
     pub order: HybridOrder,
     /// How far free ends of cut contours reach into the fill.
     pub end_overlap: f64,
-    /// How far sharp corners of contours are drawn out into the void before them, 0 to 1.
+    /// How far sharp corners of contours are extended into the void in front of them, 0 to 1.
     pub tip_reach: f64,
     /// Whether other reaches are tried as well.
     pub tries_reaches: bool,
@@ -101,7 +101,7 @@ pub struct HybridSettings {
 }
 
 impl HybridSettings {
-    /// Round joins as accurate as pockets need them: chords within half the tolerance.
+    /// Round joins accurate enough for pockets: chords within half the tolerance.
     fn join(&self) -> Join {
         Join::Round(self.tolerance / 2.0)
     }
@@ -150,7 +150,7 @@ impl Steps {
         Self::with(levels, regions, &outermost, settings)
     }
 
-    /// Gives all passes widths that follow the room.
+    /// Adapts the widths of all passes to the available space.
     fn adapt(&mut self, island: &Polygon, settings: &FillSettings) {
         let count = self.chains.len();
         self.chains.append(&mut self.skeleton);
@@ -173,8 +173,8 @@ impl Steps {
         Self { levels, regions, contours, chains, skeleton }
     }
 
-    /// Leaves out passes that end before the arc is steady, and the shortest ones until at most `most` are left, those of
-    /// the skeleton first.
+    /// Drops passes that end before the arc is steady, then the shortest ones until at most `most` remain, those of the
+    /// skeleton first.
     fn keep_longest(&mut self, most: usize, settings: &FillSettings) {
         let keep = |passes: &mut Vec<Path>, most: usize| {
             passes.retain(|pass| nominal_length(pass, settings) >= settings.min_pass_length);

@@ -11,7 +11,7 @@ use planar::{Bounds, Polygon, Region};
 /// The kinds of pockets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PocketKind {
-    /// A level that vanishes altogether.
+    /// A level that vanishes entirely.
     Whole,
     /// A narrow place between wider ones.
     Channel,
@@ -49,7 +49,7 @@ pub struct Level {
 const ARM: f64 = 0.55;
 /// Arms shorter than this are left to the contour, in stepovers.
 const SHORTEST_ARM: f64 = 0.5;
-/// No part has more contours than this; a guard, not a limit.
+/// Most contours of a part; a guard, not a limit.
 const MOST_LEVELS: usize = 100_000;
 
 /// The levels from `outermost` inwards, until nothing is left.
@@ -59,7 +59,7 @@ pub fn levels(outermost: Region, settings: &FillSettings) -> Vec<Level> {
     while !region.is_empty() && levels.len() < MOST_LEVELS {
         let mut level = level(region, settings);
         if !settings.hybrid.literal && levels.is_empty() {
-            // The outermost contour gives the shape: no pocket cuts it.
+            // The outermost contour defines the shape: no pocket cuts it.
             level.pockets.iter_mut().for_each(|pocket| pocket.kept = false);
             level.contour = level.region.clone();
         }
@@ -102,12 +102,12 @@ fn less_kept(whole: &Region, pockets: &[Pocket]) -> Region {
     if kept.is_empty() { whole.clone() } else { whole.difference(&Region::from_normalised(kept)) }
 }
 
-/// Determines the kind of a pocket and whether it is kept: channels always, corners and arms from a certain length on.
+/// Determines the kind of a pocket and whether it is kept: channels always, corners and arms above a certain length.
 fn classified(shape: Polygon, back: &Region, settings: &FillSettings) -> Pocket {
     let hybrid = &settings.hybrid;
     let near = 3.0 * hybrid.tolerance;
     let edge = edge_near(&shape, back, near);
-    // Two openings make a channel, whether they lead to two pieces or to one: a ring road around a wide place.
+    // Two openings make a channel, whether they lead to two pieces or to one: a loop around a wide place.
     let openings = openings(&shape, &edge, near);
     let channel = openings.len() > 1;
     let length = length(&shape, &openings, &edge, settings);
@@ -118,7 +118,8 @@ fn classified(shape: Polygon, back: &Region, settings: &FillSettings) -> Pocket 
         (false, true) => PocketKind::Arm,
         (false, false) => PocketKind::Corner,
     };
-    // In the paper length alone decides. Sharp contours fill sharp corners better than infill, unless these are long.
+    // In the paper length alone decides. Sharp corners are filled better by contours than by infill, unless they are
+    // long.
     let kept = match kind {
         PocketKind::Arm if !hybrid.literal => length >= SHORTEST_ARM * settings.stepover,
         PocketKind::Corner | PocketKind::Arm => length >= hybrid.min_pocket_length,
@@ -153,8 +154,8 @@ fn openings(shape: &Polygon, edge: &[(DVec2, DVec2)], near: f64) -> Vec<Vec<DVec
     openings
 }
 
-/// Length of a pocket, mm: from the middle of its opening to the point of its own outline that lies most squarely in
-/// front of the opening. The outline is sampled evenly, at most a bead width apart, and at its corners.
+/// Length of a pocket, mm: from the middle of its opening to the point of its own outline that is most squarely in
+/// front of the opening. The outline is sampled at its corners and evenly, at most a bead width apart.
 fn length(shape: &Polygon, openings: &[Vec<DVec2>], edge: &[(DVec2, DVec2)], settings: &FillSettings) -> f64 {
     let near = 3.0 * settings.hybrid.tolerance;
     let Some(opening) = openings.iter().max_by(|a, b| span(a).total_cmp(&span(b))) else { return 0.0 };

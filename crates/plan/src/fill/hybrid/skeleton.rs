@@ -1,4 +1,4 @@
-//! The fill of the skeleton regions: what is left between the contours.
+//! The fill of the skeleton regions: the areas left between the contours.
 //!
 //! Let T be the contours and links already laid. The fill covers P₀ less everything within d2 of T, so that skeleton
 //! fill and contours keep exactly d2. Narrow pieces get beads along their [medial axis](super::medial); wide ones, and
@@ -14,7 +14,7 @@ use planar::{Join, Polygon, Region, buffer, min_area_rect};
 
 /// The neighbourhood of contours is accurate to this fraction of a bead width.
 const BUFFER: f64 = 0.01;
-/// Rounds of filling: at forks and where the number of beads changes, the first one leaves room for more.
+/// Rounds of filling: at forks and where the number of beads changes, the first round leaves space for more.
 const ROUNDS: usize = 3;
 
 /// The passes of all skeleton regions. `contours` are the joined contours, already laid.
@@ -43,7 +43,7 @@ fn fill_room(
 ) -> Vec<Path> {
     let mut passes = Vec::new();
     for piece in free.polygons() {
-        // Thin walls leave long pieces of hardly any area.
+        // Thin walls leave long pieces with hardly any area.
         let long = piece.outer.length() >= 2.0 * settings.min_pass_length;
         if piece.area() < settings.hybrid.min_pocket_area && !long {
             continue;
@@ -91,7 +91,7 @@ fn shortened(points: &[DVec2], by: f64) -> Vec<DVec2> {
     without_end(line, by)
 }
 
-/// Whether a piece is nowhere wider than the regions that get beads along their axis.
+/// Whether a piece is nowhere wider than regions that get beads along their axis.
 fn is_narrow(piece: &Polygon, settings: &FillSettings) -> bool {
     // The contours lie a gap beyond its edge on both sides.
     let inner = settings.hybrid.region_width / 2.0 - settings.hybrid.least_gap;
@@ -120,15 +120,15 @@ fn scanned(piece: &Polygon, settings: &FillSettings) -> Vec<Path> {
     }
 }
 
-/// Zigzags at these angles to the side of the rectangle are compared, °.
+/// Angles between the zigzags that are compared and the side of the rectangle, °.
 const LEANS: [f64; 9] = [0.0, -5.0, 5.0, -10.0, 10.0, -15.0, 15.0, -20.0, 20.0];
-/// How many of the best take turns from layer to layer.
+/// How many of the best alternate from layer to layer.
 const TAKE_TURNS: usize = 3;
-/// A bead reaches 0.35 of its height, below which the deposit model sees a void, over this fraction of its width.
+/// A bead is higher than 0.35 of its height, the deposit model's limit for a void, over this fraction of its width.
 const HIGH: f64 = 0.8;
 
-/// A zigzag about parallel to a side, a different one on each of some layers: turns and ends that lie on top of each other on
-/// all layers grow into towers. Of those with the fewest passes, the ones that leave least bare take turns.
+/// A zigzag roughly parallel to a side, at a different angle on successive layers: turns and ends above each other on
+/// all layers would grow into towers. Of those with the fewest passes, the ones that leave least bare alternate.
 fn varied(zigzag: impl Fn(f64) -> Vec<Path>, side: f64, piece: &Polygon, settings: &FillSettings) -> Vec<Path> {
     let high = HIGH * settings.bead.width;
     // The beads of the contours end here.

@@ -1,5 +1,5 @@
-//! Widths: a piece of bead lays the metal of its cell, the area closer to it than to any other piece. A bead alone in a
-//! wall is as wide as the wall.
+//! Widths: a piece of bead lays the metal of its cell, the area closer to it than to any other piece. A single bead in
+//! a wall is as wide as the wall.
 
 use super::LoopSettings;
 use super::line::Line;
@@ -7,7 +7,7 @@ use super::room::Room;
 use glam::DVec2;
 use planar::nearest::{NONE, nearest};
 
-/// Room farther than this from every line, in stepovers, belongs to no bead.
+/// Points farther than this from every line, in stepovers, belong to no bead.
 const FARTHEST: f32 = 0.9;
 /// Widths are averaged over this many stepovers before and after.
 const WINDOW: f64 = 0.8;
@@ -46,7 +46,7 @@ fn set_widths_of(line: &mut Line, areas: &[f64], room: &Room, settings: &LoopSet
     }
 }
 
-/// Sums over `reach` values before and after each.
+/// Sums over `reach` values before and after each value.
 fn windowed(values: &[f64], reach: usize, closed: bool) -> Vec<f64> {
     let n = values.len();
     let sum = |i: usize| match closed {

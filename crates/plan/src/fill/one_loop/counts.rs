@@ -9,16 +9,16 @@ use glam::{DVec2, I64Vec2};
 use std::cmp::Reverse;
 use std::collections::HashMap;
 
-/// Neighbours within this many stepovers have a vote.
+/// Neighbours within this many stepovers vote.
 const SIGHT: f64 = 1.2;
 /// Rounds of the vote.
 const ROUNDS: usize = 2;
-/// Where there is room for less than this fraction of a ring, none is laid.
+/// Where there is space for less than this fraction of a ring, none is laid.
 const LEAST_ROOM: f64 = 0.2;
 /// How far the vote may go beyond the range of widths, as a fraction.
 const SLACK: f64 = 0.05;
 
-/// The number of rings on each side at each of the room's middles.
+/// The number of rings on each side, for each of the room's middles.
 pub fn counts(room: &Room, settings: &LoopSettings) -> Vec<u32> {
     let wanted: Vec<f64> =
         room.middles.iter().map(|middle| (middle.radius - settings.edge()) / settings.stepover).collect();
@@ -49,7 +49,7 @@ pub fn counts(room: &Room, settings: &LoopSettings) -> Vec<u32> {
     counts
 }
 
-/// Places sorted into square cells as wide as the reach of a search.
+/// Points sorted into square cells as wide as the search radius.
 struct Neighbours<'a> {
     places: &'a [DVec2],
     reach: f64,

@@ -11,11 +11,11 @@ use planar::lattice::Lattice;
 use std::f64::consts::FRAC_2_PI;
 use std::ops::Range;
 
-/// Higher metal counts as this high, so that a peak pushes no harder.
+/// Higher metal is capped at this height, so that a peak pushes no harder.
 const MOST: f32 = 1.6;
 /// Standard deviation of the blur of the heights, in bead widths.
 const BLUR: f64 = 0.26;
-/// Where less than this fraction of the blur lies inside, the height is taken to be the wanted one.
+/// Where less than this fraction of the blur lies inside, the wanted height is assumed.
 const LEAST_AREA: f32 = 0.08;
 
 /// Faults of a height field, % of the area where metal is wanted.
@@ -41,13 +41,13 @@ impl Faults {
 enum Place {
     /// Outside, or in the rim: no metal is wanted here.
     Outside,
-    /// Metal may be here, but no disc for two beads fits.
+    /// Metal may lie here, but a disc for two beads does not fit.
     Tight,
     /// Metal is wanted here.
     Wanted,
 }
 
-/// A field to lay lines in.
+/// The lattice, masks and blur with which lines are judged.
 pub struct Field<'a> {
     lattice: &'a Lattice,
     places: Vec<Place>,
@@ -92,7 +92,7 @@ impl<'a> Field<'a> {
         heights
     }
 
-    /// Adds a short piece, treated as a pool at rest at its middle.
+    /// Adds a short piece, treated as a stationary pool at its middle.
     fn stamp(&self, heights: &mut [f32], at: DVec2, length: f64, width: f64, settings: &LoopSettings) {
         let Lattice { columns, rows, step, .. } = *self.lattice;
         let (at, radius) = (self.lattice.in_steps(at), width / 2.0 / step);
@@ -125,7 +125,7 @@ impl<'a> Field<'a> {
         Faults { void: percent(void), low: percent(low - void), overfill: percent(overfill) }
     }
 
-    /// The heights, blurred over the points inside. Where there is no room for two beads, only excess metal counts.
+    /// The heights, blurred over the points inside. Where two beads do not fit, only excess metal counts.
     pub fn blurred(&self, heights: &[f32]) -> Vec<f32> {
         let height = |place: Place, height: f32| match place {
             Place::Outside => 0.0,
@@ -174,15 +174,15 @@ impl<'a> Field<'a> {
     }
 }
 
-/// The first whole number from here on, 0 or more: casts are quicker than `ceil` in builds for processors of all ages.
+/// The first whole number not below `x`, 0 or more: for baseline CPU targets a cast is faster than `ceil`.
 fn from(x: f64) -> usize {
     let whole = x.max(0.0) as usize;
     whole + usize::from((whole as f64) < x)
 }
 
-/// Adds one row of a pool to `line`. In steps: `start` is the row's first point seen from the pool's middle, `square`
-/// the squared half-width of the pool in this row, `radius` that of the pool. `height` is that of a bead laid by a line
-/// of such pools.
+/// Adds one row of a pool to `line`. In lattice steps: `start` is the row's first point relative to the pool's middle,
+/// `square` the squared half-width of the pool in this row, `radius` that of the pool. `height` is that of a bead laid
+/// by a line of such pools.
 fn pour(line: &mut [f32], section: Section, (start, square): (f64, f64), (height, radius): (f64, f64)) {
     let (start, square) = (start as f32, square as f32);
     let inside = |k: usize| {

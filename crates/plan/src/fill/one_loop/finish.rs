@@ -1,4 +1,4 @@
-//! What a controller can follow: few straight pieces and arcs, and widths that change in steps.
+//! What a controller can follow: few straight pieces and arcs, and stepwise widths.
 //!
 //! The relaxed line is replaced by the longest pieces that deviate from it by no more than a tolerance and along which
 //! the smoothed width stays within a step. Each piece has one width.
@@ -12,18 +12,18 @@ use planar::arcs::{Arc, Fit};
 
 /// Tolerance: how far the line may deviate from the relaxed one, as a fraction of a width step.
 const TOLERANCE: f64 = 0.2;
-/// Arcs are drawn as chords that deviate from them by this, in bead widths.
+/// Arcs are drawn as chords that deviate from them by at most this, in bead widths.
 const CHORD: f64 = 0.002;
-/// Middle points of arcs are multiples of this, in bead widths.
+/// The middle points of arcs are rounded to multiples of this, in bead widths.
 const GRID: f64 = 1e-6;
-/// Beads may reach this many bead widths beyond the outline: too low there to count as outside in the deposit model.
+/// Beads may extend this many bead widths beyond the outline: too low there to count as outside in the deposit model.
 const OUT: f64 = 0.005;
 
 /// Where lines lie so close that they would cross, they deviate by no more than these fractions of the tolerance.
 const CLOSER: [f64; 3] = [1.0, 0.3, 0.05];
 
-/// The lines, made of few pieces; lines that do not cross do not cross afterwards. Where some do, rings that are too short to be
-/// welded anyway are left out: before narrow necks they lie across the loop.
+/// The lines, made of few pieces; lines that did not cross do not cross afterwards. Where some would, rings too short
+/// to be welded are dropped: in front of narrow necks they lie across the loop.
 pub fn all_finished(lines: &[Line], room: &Room, settings: &LoopSettings) -> Vec<Line> {
     let finished = |closer: &f64| {
         let tolerance = TOLERANCE * settings.width_step * closer;
@@ -60,7 +60,7 @@ fn finished_to(line: &Line, tolerance: f64, room: &Room, settings: &LoopSettings
         let end = start + piece.end;
         let own = &points[start..=end];
         let mean = mean_width(own, &widths[start..end]);
-        // A width that hardly differs from the one before is replaced by it.
+        // A width that hardly differs from the previous one is replaced by it.
         if (mean - width).abs() > settings.width_step / 2.0 {
             width = mean;
         }
@@ -108,7 +108,7 @@ fn opened(line: &Line, mut widths: Vec<f64>, settings: &LoopSettings) -> (Vec<DV
     (points, widths, thin)
 }
 
-/// The last point, from `start` on, up to which the widths of the pieces stay within a step of each other.
+/// The last point, from `start` on, up to which the widths of the pieces stay within `step` of each other.
 fn alike(widths: &[f64], thin: &[bool], start: usize, step: f64) -> usize {
     let (mut low, mut high) = (widths[start], widths[start]);
     let mut end = start + 1;

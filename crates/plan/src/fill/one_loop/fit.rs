@@ -1,8 +1,8 @@
-//! Flat beads fitted edge to edge: an edge next to a gap moves out, one that lies over its neighbour moves back.
+//! Fits flat beads edge to edge: an edge next to a gap moves out, one that lies over its neighbour moves back.
 //!
-//! Every point looks to both sides, as far as the next bead or the outline. A gap or an overlap is made up by a move
-//! and a change of width together, so that each edge contributes its share. In a corner of the outline a bead goes deeper and
-//! gets narrower.
+//! Every point looks to both sides, as far as the next bead or the outline. A gap or an overlap is closed by a move
+//! combined with a change of width, so that each edge contributes its share. In a corner of the outline a bead moves
+//! further in and becomes narrower.
 
 use super::LoopSettings;
 use super::line::Line;
@@ -12,7 +12,7 @@ use glam::{DVec2, I64Vec2};
 
 /// Neighbouring beads overlap by this many bead widths.
 const OVERLAP: f64 = 0.028;
-/// Fraction of a gap that an edge closes in a round, and fraction of an overlap that it takes back.
+/// Fraction of a gap that an edge closes in a round, and fraction of an overlap that it withdraws.
 const CLOSE: f64 = 1.0;
 const BACK: f64 = 0.1;
 /// Overlaps count as at most this deep, and gaps are searched for up to this reach, in bead widths.
@@ -20,20 +20,20 @@ const DEEPEST: f64 = 0.3;
 const REACH: f64 = 0.35;
 /// Each round a point is pulled this fraction of the way to the midpoint of its neighbours.
 const TENSION: f64 = 0.03;
-/// Each round widths go this fraction of the way back to their first values.
+/// Each round, widths return by this fraction towards their initial values.
 const RETURN: f64 = 0.02;
 /// Pieces of the same line less than this many bead widths apart along it do not count as neighbours.
 const APART: f64 = 0.9;
-/// At a corner both legs touch the outline to within this, and their joint misses it by more, in bead widths.
+/// At a corner both legs touch the outline to within this, and their joint misses it by more than this, in bead widths.
 const TOUCH: f64 = 0.06;
-/// Fraction of that miss by which the joint moves in a round, and how much the bead narrows with the move in a square
+/// Fraction of that miss by which the joint moves in a round; and the ratio of bead narrowing to that move in a square
 /// corner: twice the move over √2.
 const INTO_CORNER: f64 = 0.3;
 const NARROWS: f64 = std::f64::consts::SQRT_2;
-/// Where the cosine between a piece's normal and the line of sight is no more than this, only its round ends are seen.
+/// Where the cosine between a piece's normal and the line of sight is at most this, only its round ends are seen.
 const LEAST_LEAN: f64 = 0.2;
 
-/// Fits lines edge to edge, mended after each round.
+/// Fits lines edge to edge, with `mend` applied after each round.
 pub fn fitted(mut lines: Vec<Line>, room: &Room, settings: &LoopSettings, mend: Mend) -> Vec<Line> {
     let first: Vec<Vec<f64>> = lines.iter().map(|line| line.widths.clone()).collect();
     for _ in 0..settings.rounds {
@@ -94,7 +94,7 @@ impl Moves {
     }
 }
 
-/// The free distance to one side, mm, and whether the outline ends it.
+/// The free distance to one side, mm, and whether it ends at the outline.
 #[derive(Debug, Clone, Copy)]
 struct Free {
     distance: f64,
@@ -113,7 +113,8 @@ impl Free {
     }
 }
 
-/// How far the joint of two legs in a corner of the outline moves (left is positive), and the change of bead width, mm.
+/// How far the joint of two legs in a corner of the outline moves (positive to the left), and the change of bead width,
+/// mm.
 fn corner(free: &[Free; 2], half: f64, room: f64, narrowest: f64, settings: &LoopSettings) -> Option<(f64, f64)> {
     let touch = TOUCH * settings.bead_width;
     let is_corner = |free: &&Free| free.is_outline && free.distance - half > touch && room - half < touch;
@@ -123,17 +124,17 @@ fn corner(free: &[Free; 2], half: f64, room: f64, narrowest: f64, settings: &Loo
     Some((if side == 0 { by } else { -by }, -NARROWS * by))
 }
 
-/// The view to both sides of a line.
+/// What a point of a line sees to both sides.
 struct Sight {
     from: DVec2,
-    /// To the left.
+    /// Unit vector to the left.
     normal: DVec2,
     line: usize,
     along: f64,
 }
 
 impl Sight {
-    /// How far the next bead or the outline lies to the left and to the right, `reach` (mm) at most.
+    /// Distance to the next bead or the outline on the left and on the right, at most `reach` (mm).
     fn free(&self, pieces: &Pieces, room: &Room, reach: f64, settings: &LoopSettings) -> [Free; 2] {
         let mut free = [reach; 2];
         pieces.near(self.from, |piece| {
@@ -161,7 +162,7 @@ impl Sight {
         piece.line == self.line && around < APART * settings.bead_width
     }
 
-    /// Where the line of sight runs through a piece: through its round ends, and its sides.
+    /// Where the line of sight crosses a piece: its round ends, and its sides.
     fn edges(&self, piece: &Piece) -> [Option<Crossing>; 3] {
         let (a, b, r) = (piece.from - self.from, piece.to - self.from, piece.radius);
         let (ay, by) = (self.normal.perp_dot(a), self.normal.perp_dot(b));
@@ -189,7 +190,7 @@ impl Sight {
     }
 }
 
-/// Where a line of sight runs through a bead: the middle (left is positive), and the distance from it to the edges.
+/// Where a line of sight crosses a bead: the middle (positive to the left), and the distance from it to the edges.
 struct Crossing {
     middle: f64,
     depth: f64,
@@ -200,11 +201,11 @@ struct Piece {
     to: DVec2,
     radius: f64,
     line: usize,
-    /// Place of its middle along its line, mm.
+    /// Position of its middle along its line, mm.
     along: f64,
 }
 
-/// All pieces, in square cells.
+/// All pieces, in square grid cells.
 struct Pieces {
     pieces: Vec<Piece>,
     lengths: Vec<f64>,
@@ -228,7 +229,7 @@ impl Pieces {
             }
             lengths.push(along);
         }
-        // Half of a bead, a gap and half of the widest bead lie within a cell.
+        // Half a bead, a gap and half of the widest bead fit into a cell.
         let cell = settings.bead_width * (0.5 + REACH) + settings.width_limits.1;
         let cell_of = |piece: &Piece| ((piece.from + piece.to) / (2.0 * cell)).floor().as_i64vec2();
         let low = pieces.iter().map(cell_of).reduce(|a, b| a.min(b)).unwrap_or_default();

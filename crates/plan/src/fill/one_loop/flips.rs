@@ -1,10 +1,10 @@
 //! Flips: rings joined into one loop.
 //!
-//! Where two neighbouring rings run side by side, a stretch of each is taken out and two links are laid between their
+//! Where two neighbouring rings run side by side, a section of each is removed and two links are laid between their
 //! ends: the same metal in the same place, but two loops have become one. A spanning tree of flips over all
 //! neighbouring rings makes one loop of an island, whatever its holes and branches.
 //!
-//! Flips are placed where both rings are straight and parallel, apart from each other, elsewhere on the next layers.
+//! Flips are placed where both rings are straight and parallel, away from each other, and elsewhere on the next layers.
 
 use super::LoopSettings;
 use super::rings::{POINTS_PER_STEPOVER, Ring};
@@ -18,24 +18,25 @@ const FARTHEST: f64 = 1.6;
 const MOST: f64 = 0.3;
 /// Flips stay this many stepovers apart where they can.
 const APART: f64 = 2.2;
-/// Side of the squares in which layers take turns to place flips, in stepovers.
+/// Side of the squares of a checkerboard by which successive layers place flips in different places, in stepovers.
 const FIELD: f64 = 4.0;
-/// After this many layers a square has its turn again.
+/// Number of layers after which a square has its turn again.
 pub(super) const TURNS: i64 = 3;
-/// No other ring comes closer to the middle between two rings than this fraction of their distance.
+/// No other ring may come closer to the middle between two rings than this fraction of their distance.
 const BETWEEN: f64 = 0.35;
-/// Where a link is checked, and how far it stays from the outline, in widths of the narrowest bead.
+/// Points at which a link is checked, as fractions of it; and its least distance from the outline, in widths of the
+/// narrowest bead.
 const LINK: [f64; 3] = [0.25, 0.5, 0.75];
 const NARROWEST: f64 = 0.45;
 
-/// A place where two rings can be joined: a stretch of each, by the numbers of their points.
+/// A place where two rings can be joined: a section of each, by the indices of its points.
 #[derive(Debug, Clone, PartialEq)]
 struct Flip {
     rings: [usize; 2],
     /// From one end to the other; the first points lie next to each other, and so do the last.
     stretches: [Vec<usize>; 2],
     place: DVec2,
-    /// The lower the better.
+    /// Cost: lower is better.
     score: f64,
 }
 
@@ -133,7 +134,7 @@ impl Points {
         start + (point as isize - start as isize + by).rem_euclid(count) as usize
     }
 
-    /// Marks the points of a flip, and half as many before and after, so that no other flip takes them.
+    /// Marks the points of a flip, and half as many before and after it, so that no other flip uses them.
     fn take(&self, flip: &Flip, taken: &mut [bool]) {
         for stretch in &flip.stretches {
             let pad = stretch.len() as isize / 2;
@@ -181,7 +182,7 @@ fn replace(beside: &mut [[Option<usize>; 2]], point: usize, old: Option<usize>, 
     }
 }
 
-/// Points by squares.
+/// Points, binned in squares.
 struct Squares {
     side: f64,
     points: HashMap<I64Vec2, Vec<usize>>,
@@ -200,7 +201,7 @@ impl Squares {
         (p / self.side).floor().as_i64vec2()
     }
 
-    /// The points in the square of a place and in those around it.
+    /// The points in the square of a position and in the squares around it.
     fn near(&self, p: DVec2) -> impl Iterator<Item = usize> + '_ {
         let home = self.square(p);
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| I64Vec2::new(dx, dy)));
@@ -286,7 +287,7 @@ fn flip(points: &Points, i: usize, j: usize, settings: &LoopSettings) -> Option<
     let gaps: Vec<f64> = gaps.collect();
     let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
     let spread = (gaps.iter().map(|gap| (gap - mean).powi(2)).sum::<f64>() / gaps.len() as f64).sqrt();
-    // How far a ring turns over the stretch and as much before and after it.
+    // How much a ring turns over the section, and over as much before and after it.
     let turn = |middle: usize| {
         let around = (-pieces - half..=pieces + half).map(|k| points.way[points.further(middle, k)]);
         1.0 - around.map(|way| way.dot(points.way[middle])).fold(1.0, f64::min)
@@ -296,8 +297,7 @@ fn flip(points: &Points, i: usize, j: usize, settings: &LoopSettings) -> Option<
     Some(Flip { rings, stretches, place, score })
 }
 
-/// The cost of a place where it is another layer's turn. Places are squares whose turns alternate along rows and
-/// columns.
+/// The cost of a position that belongs to another layer's turn. The squares' turns alternate along rows and columns.
 fn out_of_turn(place: DVec2, settings: &LoopSettings) -> f64 {
     let square = ((place - settings.datum) / (FIELD * settings.stepover)).floor().as_i64vec2();
     let turn = (square.x + 2 * square.y - settings.layer as i64).rem_euclid(TURNS);

@@ -4,11 +4,11 @@ use super::LoopSettings;
 use super::room::Room;
 use glam::DVec2;
 
-/// Extra distance that beads keep from the outline, in bead widths: what the lattice does not resolve.
+/// Extra distance that beads keep from the outline, in bead widths, to allow for what the lattice does not resolve.
 const MARGIN: f64 = 5e-4;
 /// A bead edge closer to the outline than this, in bead widths, is moved onto it.
 const SNAP: f64 = 0.05;
-/// No edge moves farther than this at a time, in bead widths.
+/// Greatest move of an edge at a time, in bead widths.
 const MOST: f64 = 0.2;
 
 /// A centre-line.
@@ -16,7 +16,7 @@ const MOST: f64 = 0.2;
 pub struct Line {
     /// Its points; the first one of a closed line is not repeated.
     pub points: Vec<DVec2>,
-    /// Bead width of the piece after each point, mm; the last one of an open line has no meaning.
+    /// Bead width of the piece after each point, mm; the last value of an open line is unused.
     pub widths: Vec<f64>,
     /// Whether the piece after each point lies in a wall for one bead.
     pub thin: Vec<bool>,
@@ -131,14 +131,15 @@ impl Line {
         self.points.iter().copied().chain(self.points.first().copied().filter(|_| self.closed)).collect()
     }
 
-    /// Pulls every point by the fraction `part` towards the midpoint of its neighbours; ends stay.
+    /// Pulls every point by the fraction `part` towards the midpoint of its neighbours; ends are fixed.
     pub fn tighten(&mut self, part: f64) {
         let middle = |i: usize| (self.points[self.before(i)] + self.points[self.behind(i)]) / 2.0;
         let drawn = |i: usize| if self.is_end(i) { self.points[i] } else { self.points[i].lerp(middle(i), part) };
         self.points = (0..self.points.len()).map(drawn).collect();
     }
 
-    /// Moves points inwards if they lie too close to the outline for the narrowest bead; in a wall, for half of the thinnest one.
+    /// Moves points inwards if they are too close to the outline for the narrowest bead; in a wall, for half of the
+    /// thinnest one.
     pub fn keep_inside(&mut self, room: &Room, settings: &LoopSettings) {
         for i in 0..self.points.len() {
             let narrowest = if self.thin[i] { settings.thinnest } else { settings.width_limits.0 };
@@ -154,7 +155,7 @@ impl Line {
         }
     }
 
-    /// Moves bead edges that reach beyond the outline, or just miss it, onto it; the other edge stays where it is.
+    /// Moves bead edges that extend beyond the outline, or just miss it, onto it; the other edge stays in place.
     pub fn meet_outline(&mut self, room: &Room, settings: &LoopSettings) {
         let w = settings.bead_width;
         let excess: Vec<f64> = (0..self.points.len())
@@ -170,7 +171,7 @@ impl Line {
         }
     }
 
-    /// Narrows beads that would reach beyond the outline.
+    /// Narrows beads that would extend beyond the outline.
     pub fn fit_inside(&mut self, room: &Room, settings: &LoopSettings) {
         let room_at = |p: &DVec2| 2.0 * (room.at(*p) - MARGIN * settings.bead_width);
         let rooms: Vec<f64> = self.points.iter().map(room_at).collect();

@@ -2,7 +2,7 @@
 //!
 //! | step | file |
 //! | --- | --- |
-//! | parts with room for two beads, and walls for one | [`thin`](super::thin) |
+//! | areas with space for two beads, and walls for one | [`thin`](super::thin) |
 //! | the room: distances and the middle of walls | [`room`] |
 //! | how many rings lie on each side of the middle | [`counts`] |
 //! | a phase that is whole on rings and half-way between them in the middle | [`phase`] |
@@ -11,12 +11,12 @@
 //! | walls for one bead tied in | [`tie`] |
 //! | widths by cell | [`cells`] |
 //! | relaxation: by heights ([`relax`] on a [`field`]), flat beads by their edges ([`fit`]) | |
-//! | lines that would cross go back | [`tangles`] |
+//! | lines that would cross are moved back | [`tangles`] |
 //! | few pieces, widths in steps | [`finish`] |
 //!
 //! The whole method is our own. Rings are level sets: closed by construction, nested, and never crossing. There are as
-//! many on one side of a wall as on the other, so no bead is left over and none ends; where the room is not a whole
-//! number of beads wide, all of them get a little wider or narrower.
+//! many on one side of a wall as on the other, so no bead is left over and none ends; where the width is not a whole
+//! number of beads, all of them become slightly wider or narrower.
 
 pub mod cells;
 pub mod counts;
@@ -56,7 +56,7 @@ pub struct LoopOptions {
     pub width_step: f64,
     /// Rounds of relaxation.
     pub rounds: u32,
-    /// Length of the stretches that a flip takes out, in distances between rings.
+    /// Length of the sections that a flip removes, in distances between rings.
     pub flip_length: f64,
     /// Whether nested rings become a spiral.
     pub spirals: bool,
@@ -81,11 +81,11 @@ pub struct LoopSettings<'a> {
     pub width_limits: (f64, f64),
     /// The narrowest and the widest bead alone in a wall.
     pub single: (f64, f64),
-    /// Thinner walls get no bead.
+    /// Walls thinner than this get no bead.
     pub thinnest: f64,
-    /// From this thickness on a wall has room for two beads.
+    /// From this thickness on a wall has space for two beads.
     pub double: f64,
-    /// How far an end stays away from a line that passes, in bead widths.
+    /// Distance of an end from a line that passes it, in bead widths.
     pub end_gap: f64,
     /// Passes shorter than this are left out.
     pub shortest: f64,
@@ -95,7 +95,7 @@ pub struct LoopSettings<'a> {
     pub width_step: f64,
     /// Rounds of relaxation.
     pub rounds: u32,
-    /// Length of the stretches that a flip takes out, in distances between rings.
+    /// Length of the sections that a flip removes, in distances between rings.
     pub flip_length: f64,
     /// Whether nested rings become a spiral.
     pub spirals: bool,
@@ -115,7 +115,7 @@ impl Strategy for OneLoop {
         self.fill_layers(island, std::slice::from_ref(settings)).pop().unwrap_or_default()
     }
 
-    /// Only where loops begin differs between the layers.
+    /// Only the starts of loops differ between the layers.
     fn fill_layers(&self, island: &Polygon, layers: &[FillSettings]) -> Vec<Fill> {
         let Some(first) = layers.first() else { return Vec::new() };
         let mut passes: Vec<Vec<Path>> = vec![Vec::new(); layers.len()];
@@ -147,20 +147,20 @@ impl Strategy for OneLoop {
             .collect()
     }
 
-    /// Flips and spirals take turns.
+    /// Flips and spirals alternate over the layers.
     fn period(&self) -> Option<usize> {
         Some(2 * flips::TURNS as usize)
     }
 }
 
-/// A single loop begins where its seam was put; several begin wherever the travel is short.
+/// A single loop begins at its seam; several begin wherever the travel is short.
 fn fill_of(passes: Vec<Path>) -> Fill {
     let alone = matches!(&passes[..], [pass] if pass.closed);
     Fill { stages: vec![passes], fixed_order: alone }
 }
 
-/// The steps of an island with the middle of its bounding box as origin, and where that middle lies. A machining
-/// allowance may join an island to itself or, if negative, split it: then there are several.
+/// The steps of an island, with the middle of its bounding box as origin, and where that middle lies, mm. A machining
+/// allowance may join an island to itself or, if negative, split it into several.
 pub fn steps(island: &Polygon, settings: &FillSettings) -> Vec<(Steps, DVec2)> {
     let parts = island.offset(settings.machining_allowance, Join::ROUND);
     let placed = parts.polygons().iter().map(|part| {
@@ -170,8 +170,8 @@ pub fn steps(island: &Polygon, settings: &FillSettings) -> Vec<(Steps, DVec2)> {
     placed.collect()
 }
 
-/// The rings of an island by themselves, level by level from the outline inwards, each as wide as its cell. They stay where
-/// two of the narrowest beads have room side by side, and half of one from the outline.
+/// The rings of an island, not joined, level by level from the outline inwards, each as wide as its cell. They stay
+/// where two of the narrowest beads fit side by side, and half of one from the outline.
 pub(super) fn apart(island: &Polygon, settings: &FillSettings) -> Vec<Vec<Path>> {
     let (allowance, roomy) = (settings.machining_allowance, settings.double() / 2.0);
     let mut levels: Vec<Vec<Path>> = Vec::new();
@@ -204,7 +204,7 @@ pub(super) fn apart(island: &Polygon, settings: &FillSettings) -> Vec<Vec<Path>>
     levels
 }
 
-/// Narrows the pieces of a line that would reach beyond an outline.
+/// Narrows the pieces of a line that would extend beyond an outline.
 fn narrow(line: &mut Line, outline: &Polygon) {
     let edges: Vec<(DVec2, DVec2)> = outline.rings().flat_map(planar::Ring::edges).collect();
     let room = |p: &DVec2| {
@@ -233,7 +233,7 @@ fn pass(line: Line, middle: DVec2) -> Path {
 }
 
 impl<'a> LoopSettings<'a> {
-    /// For an island moved by `middle`.
+    /// Settings for an island moved by `middle`.
     fn of(fill: &FillSettings<'a>, middle: DVec2) -> Self {
         let LoopOptions { width_limits, smoothing_length, width_step, rounds, flip_length, spirals } = fill.one_loop;
         Self {
@@ -257,7 +257,7 @@ impl<'a> LoopSettings<'a> {
         }
     }
 
-    /// How far inside a bead's edge its cell ends, mm.
+    /// Distance from a bead's edge inwards to the end of its cell, mm.
     pub fn edge(&self) -> f64 {
         (self.bead_width - self.stepover) / 2.0
     }
@@ -287,7 +287,7 @@ impl<'a> LoopSettings<'a> {
         self.law.bead(&self.bead, width).height / self.bead.height
     }
 
-    /// Which walls have room for one bead only.
+    /// Limits that decide which walls have space for one bead only.
     pub fn thin_limits(&self) -> ThinLimits {
         let Self { bead_width, single, thinnest, double, .. } = *self;
         ThinLimits { bead_width, single, thinnest, double }

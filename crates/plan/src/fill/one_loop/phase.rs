@@ -2,21 +2,21 @@
 //! the middle of every wall.
 //!
 //! u = (D − e + φ)/d + ½, with D the distance from the outline. φ is harmonic, 0 on the outline, and in the middle
-//! pulled softly towards what is missing for a whole number of rings. Where the room is a whole number of beads wide, φ
+//! pulled softly towards the amount missing for a whole number of rings. Where the width is a whole number of beads, φ
 //! is 0 and the rings are plain offsets.
 
 use super::LoopSettings;
 use super::room::{HALVINGS, Room};
 use planar::lattice::Lattice;
 
-/// How firmly φ is held in the middle, per bead width.
+/// Strength with which φ is held in the middle, per bead width.
 const HOLD: f32 = 9.6;
 /// Sweeps on each lattice, from the coarsest to the finest.
 const SWEEPS: usize = 12;
 /// Each step is this many times the step to the local solution (successive over-relaxation).
 const OVER: f32 = 1.5;
 
-/// The field, as 32-bit numbers on the room's lattice; below ½ outside.
+/// The field, as 32-bit floats on the room's lattice; below ½ outside.
 pub fn phase(room: &Room, counts: &[u32], settings: &LoopSettings) -> Vec<f32> {
     let (d, e) = (settings.stepover, settings.edge());
     let mut pins = Pins { weight: vec![0.0; room.lattice.len()], value: vec![0.0; room.lattice.len()] };
@@ -41,8 +41,8 @@ struct Pins {
     value: Vec<f32>,
 }
 
-/// The harmonic field that is 0 at points that are not free and pulled towards the pins; solved on lattices from coarse
-/// to fine, each starting from the one before.
+/// The harmonic field that is 0 at fixed points and pulled towards the pins; solved on lattices from coarse to fine,
+/// each starting from the previous one.
 fn harmonic(lattice: &Lattice, free: &[bool], pins: &Pins, halvings: u32) -> Vec<f32> {
     let mut field = if halvings == 0 {
         vec![0.0; lattice.len()]

@@ -1,7 +1,7 @@
-//! Relaxation on the height field: lines move to where metal is missing, and widths follow the height around them.
+//! Relaxation on the height field: lines move to where metal is missing, and widths follow the surrounding height.
 //!
 //! Points move down the slope of the blurred heights, mainly across their line; a little tension keeps lines smooth.
-//! Strides and gains fall from round to round, and the best round is kept.
+//! Strides and gains decrease from round to round, and the best round is kept.
 
 use super::LoopSettings;
 use super::field::Field;
@@ -11,9 +11,9 @@ use super::tangles::Mend;
 use glam::DVec2;
 use planar::Region;
 
-/// A point moves by this, in bead widths, for a slope of one bead height per bead width.
+/// Move of a point, in bead widths, for a slope of one bead height per bead width.
 const STRIDE: f64 = 0.03;
-/// No point moves farther than this in a round, in bead widths.
+/// Greatest move of a point in a round, in bead widths.
 const FARTHEST: f64 = 0.05;
 /// Fraction of the slope along the line that is ignored.
 const ACROSS: f64 = 0.8;
@@ -25,11 +25,11 @@ const STRIDE_FALL: f64 = 0.95;
 const GAIN: f64 = 0.5;
 /// Factor by which the gain falls from round to round.
 const GAIN_FALL: f64 = 0.8;
-/// Lower heights count as the first value, and no width changes by more than the second, as a fraction, in a round.
+/// Heights are taken as at least the first value, and widths change by at most the second, as a fraction, in a round.
 const LOWEST: f64 = 0.3;
 const MOST_CHANGE: f64 = 0.1;
 
-/// Relaxes lines, mended after each round; the best round is kept.
+/// Relaxes lines, with `mend` applied after each round; the best round is returned.
 pub fn relaxed(mut lines: Vec<Line>, room: &Room, open: &Region, settings: &LoopSettings, mend: Mend) -> Vec<Line> {
     let field = Field::of(room, open, settings);
     let mut before = lines.clone();

@@ -10,7 +10,8 @@ use planar::polyline;
 pub const POINTS_PER_STEPOVER: f64 = 10.0;
 /// Rounds of smoothing over neighbouring lattice steps.
 const SMOOTHING: usize = 6;
-/// Length of the shortest ring, in stepovers: about as tight as a bead can turn. Shorter ones become circles this long.
+/// Length of the shortest ring, in stepovers: about as tight as a bead can turn. Shorter ones become circles of this
+/// length.
 const SHORTEST: f64 = 2.2;
 
 /// A closed centre-line.

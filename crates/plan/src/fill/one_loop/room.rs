@@ -1,4 +1,4 @@
-//! Room: how far each place of an island lies from its outline, and how wide the island is along its middle.
+//! Room: the distance of each point of an island from its outline, and the island's width along its middle.
 
 use super::LoopSettings;
 use glam::DVec2;
@@ -10,11 +10,11 @@ use planar::{Bounds, Polygon, Region, Ring};
 const POINTS_ACROSS: f64 = 12.0;
 /// How many times the lattice can be halved.
 pub(super) const HALVINGS: u32 = 4;
-/// Cosine of 115°: a place is in the middle of a wall if the directions to its nearest outlines are farther apart than
+/// Cosine of 115°: a point is in the middle of a wall if the directions to its nearest outlines differ by more than
 /// that. The branches of the medial axis into square corners do not count.
 const COS_BETWEEN: f64 = -0.4226;
 
-/// A place in the middle of a wall.
+/// A point in the middle of a wall.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Middle {
     /// Index of the lattice point.
@@ -23,7 +23,7 @@ pub struct Middle {
     pub radius: f64,
 }
 
-/// The room inside an island.
+/// The space inside an island.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Room {
     /// Points over the island.
@@ -32,7 +32,7 @@ pub struct Room {
     pub inside: Vec<bool>,
     /// Distance from the outline, mm; 0 outside.
     pub distance: Vec<f32>,
-    /// The places in the middle of walls.
+    /// The points in the middle of walls.
     pub middles: Vec<Middle>,
 }
 
@@ -60,7 +60,7 @@ impl Room {
         self.lattice.value_at(&self.distance, p)
     }
 
-    /// The direction away from the outline.
+    /// Unit vector away from the outline.
     pub fn inwards(&self, p: DVec2) -> DVec2 {
         self.lattice.slope_at(&self.distance, p).normalize_or_zero()
     }
@@ -85,7 +85,7 @@ fn middles(lattice: &Lattice, edges: &[(DVec2, DVec2)], near: &Nearest) -> Vec<M
                 let (f, g) = (nearest::foot(edges[own as usize], p), nearest::foot(edges[other as usize], q));
                 let cos = (f - p).normalize_or_zero().dot((g - q).normalize_or_zero());
                 if cos < COS_BETWEEN {
-                    // The chord of a disc that touches both.
+                    // The chord between the points where a disc touches both sides.
                     let half = f.distance(g) / (2.0 * ((1.0 - cos) / 2.0).sqrt());
                     radius[i] = radius[i].max(half);
                     radius[j] = radius[j].max(half);

@@ -17,12 +17,13 @@ const MOST: f64 = 0.4;
 const FARTHEST: f64 = 1.3;
 /// The ends of the path reach this far into the ramp next to them, as a fraction of the ramp.
 const END: f64 = 0.45;
-/// Places for the ramps are tried this many stepovers apart.
+/// Positions for the ramps are tried this many stepovers apart.
 const TRIES: f64 = 1.0;
-/// At most this many places are tried.
+/// Most positions tried.
 const MOST_TRIES: usize = 64;
 
-/// The open path through nested rings, from the outermost to the innermost; none if not nested or fewer than three.
+/// The open path through nested rings, from the outermost to the innermost; `None` if they are not nested or fewer than
+/// three.
 pub fn spiral(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<DVec2>> {
     let chain = chain(rings, settings)?;
     let d = settings.stepover;
@@ -46,7 +47,7 @@ fn chain(rings: &[Ring], settings: &LoopSettings) -> Option<Vec<Vec<DVec2>>> {
         let apart = || mean_distance(inner, &pair[0].points).max(mean_distance(&pair[0].points, inner));
         inner.first().is_some_and(|p| outer.contains(*p)) && apart() < FARTHEST * settings.stepover
     });
-    // All run the same way.
+    // Make all run the same way.
     let turned = |ring: &Ring| {
         let mut points = ring.points.clone();
         if planar::Ring::new(points.clone()).area() < 0.0 {
@@ -64,7 +65,7 @@ fn mean_distance(points: &[DVec2], others: &[DVec2]) -> f64 {
     some.clone().map(distance).sum::<f64>() / some.count() as f64
 }
 
-/// The rings rotated so that they begin next to each other.
+/// The rings, rotated so that they begin next to each other.
 struct Aligned {
     rings: Vec<Vec<DVec2>>,
     ramps: Vec<f64>,
@@ -136,7 +137,7 @@ impl Aligned {
         for j in 0..count {
             let t = j as f64 / count as f64;
             let [a, b] = [k, k + 1].map(|ring| point_at(&self.rings[ring], t * ramp).unwrap_or_default());
-            // Begins and ends along the rings.
+            // Begins and ends tangentially to the rings.
             path.push(a.lerp(b, t * t * (3.0 - 2.0 * t)));
         }
     }

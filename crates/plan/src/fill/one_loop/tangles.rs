@@ -1,30 +1,31 @@
-//! Lines that would cross, or step back along themselves, when they move go back to where they were.
+//! Moves back lines that would cross, or fold back on themselves.
 
 use super::line::Line;
 use crate::fill::sound::crossing_pieces;
 use glam::DVec2;
 
-/// Points to each side of a crossing that go back at first, and the factor by which they grow with each further attempt.
+/// Points on each side of a crossing that are moved back at first, and the factor by which their number grows with each
+/// attempt.
 const AROUND: usize = 4;
 const MORE: usize = 3;
-/// After this many attempts all points go back.
+/// After this many attempts all points are moved back.
 const ATTEMPTS: u32 = 4;
 
-/// What is done after each round to lines as they are, given how they were before it.
+/// What is done after each round, given the lines as they are and as they were before it.
 pub type Mend = fn(&mut [Line], &[Line]);
 
-/// Moves lines in rounds, so that lines that do not cross do not cross afterwards: first without checking for crossings, which
-/// takes time, and once more with the check where that tangles them.
+/// Moves lines in rounds so that lines that do not cross do not cross afterwards: first without checking for crossings,
+/// which takes time, and again with the check if that tangled them.
 pub fn moved(lines: &[Line], rounds: impl Fn(Vec<Line>, Mend) -> Vec<Line>) -> Vec<Line> {
     let quick = rounds(lines.to_vec(), |_, _| {});
     let is_worse = (tangled(&quick) && !tangled(lines)) || new_folds(&quick, lines).next().is_some();
     if is_worse { rounds(lines.to_vec(), untangle) } else { quick }
 }
 
-/// A line folds where its direction changes by an angle with less than this cosine, about 150°.
+/// A line folds where the cosine of its turn is below this, about 150°.
 const FOLD: f64 = -0.87;
 
-/// Where lines step back along themselves and did not `before`: numbers of the line and of the piece behind the fold.
+/// Where lines fold and did not `before`: indices of the line and of the piece after the fold.
 fn new_folds<'a>(lines: &'a [Line], before: &'a [Line]) -> impl Iterator<Item = (usize, usize)> + 'a {
     let folds = |line: &Line, i: usize| {
         let (here, way) = (line.points[i], line.points[line.behind(i)] - line.points[i]);
@@ -45,8 +46,8 @@ pub fn tangled(lines: &[Line]) -> bool {
     !crossing_pieces(&paths(lines)).is_empty()
 }
 
-/// Moves points back to where they were `before`, with the neighbouring widths, until no line crosses another or itself or
-/// steps back; the lines have the same points in the same order, and did not cross before.
+/// Moves points back to where they were `before`, with the neighbouring widths, until no line crosses another or itself
+/// or folds. The lines have the same points in the same order, and did not cross before.
 fn untangle(lines: &mut [Line], before: &[Line]) {
     for attempt in 0..ATTEMPTS {
         let crossings = crossing_pieces(&paths(lines)).into_iter().flat_map(|crossing| crossing.pieces);

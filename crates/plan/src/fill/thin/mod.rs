@@ -1,10 +1,10 @@
-//! Thin walls: the parts of an island with room for only one bead.
+//! Thin walls: the parts of an island with space for only one bead.
 //!
 //! A disc as wide as two of the narrowest beads side by side is rolled through the island (an opening). What it reaches
 //! is *thick* and left to a strategy; elsewhere one bead follows the medial axis, as wide as the wall ([`split`]).
 //! Where a thin wall meets a thick part, its bead is tied to the passes there ([`tie`](mod@tie)). Corners, and walls no
 //! longer than they are wide, do not count as thin walls: they stay with the thick part they belong to. `around` does
-//! all of this for a strategy.
+//! all this for a strategy.
 
 pub mod tie;
 
@@ -25,9 +25,10 @@ pub struct ThinLimits {
     pub bead_width: f64,
     /// The narrowest and the widest single bead.
     pub single: (f64, f64),
-    /// Thinner walls get no bead; from here up to the narrowest bead they get that bead, which reaches beyond them.
+    /// Walls thinner than this get no bead; from here up to the narrowest bead they get that bead, which extends beyond
+    /// them.
     pub thinnest: f64,
-    /// From this thickness on there is room for two beads.
+    /// From this thickness on there is space for two beads.
     pub double: f64,
 }
 
@@ -64,8 +65,8 @@ pub struct Split {
 
 /// Minimum length of a wall that is attached at one end only, or tapers to nothing, in bead widths.
 const SHORTEST: f64 = 1.5;
-/// Minimum length of one of several necks thinner than the narrowest bead, such as those between holes, in bead widths: a bead for
-/// each would cost an arc start, so passes go through both sides of shorter ones.
+/// Least length of one of several necks thinner than the narrowest bead, such as those between holes, in bead widths: a
+/// bead for each would cost an arc start, so shorter necks are filled by passes along both sides.
 const NECK: f64 = 3.0;
 /// Minimum area of a thin piece, in squared bead widths.
 const SMALLEST: f64 = 0.15;
@@ -88,10 +89,10 @@ const TAIL: f64 = 1.5;
 /// Samples of the medial axis per bead width; a wall begins and ends at one of them.
 const SAMPLES: f64 = 6.0;
 
-/// Walls from this thickness on, in bead widths, are left to the strategy if all its beads have the same width.
+/// If a strategy's beads all have the same width, walls from this thickness on, in bead widths, are left to it.
 const DOUBLE: f64 = 1.4;
 
-/// Fills the thick parts of an island by `fill`, and ties a bead for each thin wall to the passes there.
+/// Fills the thick parts of an island with `fill`, and ties a bead for each thin wall to the passes there.
 pub(super) fn around<'a>(
     island: &Polygon,
     settings: &FillSettings<'a>,
@@ -129,7 +130,7 @@ pub(super) fn around<'a>(
     result
 }
 
-/// Holds each width until the wanted one is more than half a step off, so that few moves change the speed.
+/// Keeps each width until the wanted one is more than half a step off, so that few moves change the speed.
 fn step_widths(pass: &mut Path, step: f64) {
     let Along::Each(widths) = &mut pass.width else { return };
     let mut held = f64::NEG_INFINITY;
@@ -141,7 +142,7 @@ fn step_widths(pass: &mut Path, step: f64) {
     }
 }
 
-/// The stage with the pass that lies nearest to a mouth.
+/// The stage with the pass that is nearest to a mouth.
 fn nearest_stage(stages: &[Vec<Path>], walls: &[ThinWall]) -> usize {
     let mouths: Vec<_> = walls
         .iter()
@@ -168,7 +169,7 @@ fn round(limits: &ThinLimits) -> Join {
     Join::Round(ACCURACY * limits.bead_width)
 }
 
-/// Whether [`split`] would surely find no thin wall.
+/// Whether [`split`] certainly finds no thin wall.
 fn is_thick(island: &Polygon, centres: &Region, limits: &ThinLimits) -> bool {
     island.is_roomy_for_disc(limits.double / 2.0, centres, SMALLEST * limits.bead_width * limits.bead_width)
 }
@@ -183,7 +184,7 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
     let whole = with_fewer_points(island, SIMPLER * limits.bead_width);
     let open = centres.offset(limits.double / 2.0 + GROWN * limits.bead_width, round(limits));
     let needs_two = |part: &&Polygon| part.holds_disc(limits.single.1 / 2.0);
-    // The disc that opened a part fits into it; the part has grown.
+    // The disc that opened a part fits into it; the part has been grown since.
     let widest = limits.single.1 / 2.0 + GROWN * limits.bead_width;
     let opens_two = |part: &&Polygon| limits.single.1 <= limits.double || part.holds_disc(widest);
     let thick: Vec<Polygon> = open.polygons().iter().filter(opens_two).cloned().collect();
@@ -213,14 +214,14 @@ fn split_by(island: &Polygon, centres: &Region, limits: &ThinLimits) -> Split {
         let thick = Some(island.clone()).filter(|island| needs_two(&island)).into_iter().collect();
         return Split { thick, thin, open };
     }
-    // A little more is cut off: edges that coincide take long to resolve.
+    // Slightly more is cut off: coinciding edges take long to resolve.
     let rest = whole.difference(&Region::from_normalised(pieces).offset(ACCURACY * limits.bead_width, round(limits)));
     Split { thick: rest.into_polygons().into_iter().filter(|p| needs_two(&p)).collect(), thin, open }
 }
 
 /// Which pieces of an island lie between thick parts.
 struct Between {
-    /// The parts that have a point at a place; places are whole micrometres.
+    /// The part that has a point at a position, in whole micrometres.
     parts: HashMap<[i64; 2], usize>,
 }
 
@@ -235,7 +236,7 @@ impl Between {
         Self { parts: placed.collect() }
     }
 
-    /// Whether a piece of what the parts leave joins two of them, however short it is: it has points of both.
+    /// Whether a piece of the remainder joins two parts, however short it is: it has points of both.
     fn joins(&self, piece: &Polygon) -> bool {
         if self.parts.is_empty() {
             return false;
@@ -246,7 +247,7 @@ impl Between {
     }
 }
 
-/// A place in whole micrometres.
+/// A position in whole micrometres.
 fn place(point: DVec2) -> [i64; 2] {
     (point * 1e3).round().as_i64vec2().to_array()
 }
@@ -261,22 +262,22 @@ fn with_fewer_points(island: &Polygon, tolerance: f64) -> Region {
     Region::from_rings(&rings, FillRule::NonZero)
 }
 
-/// The medial axis about thin pieces of `whole`.
+/// The medial axis around thin pieces of `whole`.
 fn axis(pieces: &[Polygon], whole: &Region, limits: &ThinLimits) -> MedialAxis {
     // The piece is extended beyond its mouths, so that the axis runs straight through them.
     let around = Region::from_normalised(pieces.to_vec()).offset(2.0 * limits.double, round(limits));
     let options = MedialOptions { spacing: limits.bead_width / SAMPLES, ..MedialOptions::default() };
-    // Teeth and bumps: they would cut the wall that they are on into short pieces.
+    // Teeth and bumps would cut the wall that they are on into short pieces.
     let is_spur = |nodes: &[Node]| length(nodes) < SHORTEST * limits.bead_width;
     MedialAxis::of_region(&whole.intersection(&around), &options).pruned(CORNER).without_spurs(is_spur)
 }
 
-/// What is known about the necks of a thin piece.
+/// Properties of the necks of a thin piece.
 #[derive(Debug, Clone, Copy)]
 struct Neck {
     /// The piece is a neck between two thick parts, and hardly longer than thick.
     short: bool,
-    /// Walls go through the shortest neck: the island has no thick part that passes could fill instead, or no other wall.
+    /// Even the shortest neck gets a wall: the island has no thick part whose passes could fill it, or no other wall.
     through: bool,
 }
 
@@ -293,7 +294,7 @@ fn walls(piece: &Polygon, neck: Neck, axis: &MedialAxis, limits: &ThinLimits) ->
     if walls.iter().all(|wall| nearly(wall) && hangs(wall)) { Vec::new() } else { walls }
 }
 
-/// The stretches of a branch that lie within the thin piece and are wide enough for a bead.
+/// The sections of a branch that lie within the thin piece and are wide enough for a bead.
 fn walls_along(branch: &Branch, piece: &Polygon, neck: Neck, limits: &ThinLimits) -> Vec<ThinWall> {
     let nodes = &branch.nodes;
     let inside: Vec<bool> = nodes.iter().map(|node| piece.contains(node.at)).collect();
@@ -352,7 +353,7 @@ fn stretches(fits: &[bool]) -> Vec<Range<usize>> {
     stretches
 }
 
-/// The nodes from number `from` on, up to a length of `reach` (mm).
+/// The nodes from index `from` on, up to a length of `reach` (mm).
 fn tail(nodes: &[Node], from: usize, outwards: bool, reach: f64) -> Vec<Node> {
     let on: Vec<Node> = if outwards { nodes[from..].to_vec() } else { nodes[..=from].iter().rev().copied().collect() };
     let mut along = 0.0;
@@ -364,8 +365,8 @@ fn tail(nodes: &[Node], from: usize, outwards: bool, reach: f64) -> Vec<Node> {
     on[..count].to_vec()
 }
 
-/// Drops walls with one free end that are hardly longer than wide: they are corners. The junctions where they ended may
-/// then no longer be junctions.
+/// Drops walls with one free end that are hardly longer than wide: they are corners. Junctions where they ended may
+/// then be junctions no longer.
 fn drop_stubs(walls: &mut Vec<ThinWall>, limits: &ThinLimits) {
     loop {
         let mut degrees = std::collections::BTreeMap::new();

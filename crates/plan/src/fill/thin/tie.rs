@@ -14,13 +14,13 @@ use planar::polyline;
 
 /// The end of a wall looks for a pass within this many bead widths.
 const REACH: f64 = 1.5;
-/// Walls that meet a pass closer together than this, in bead widths, meet it at one place.
+/// Walls that meet a pass within this many bead widths meet it at one point.
 const SAME_PLACE: f64 = 0.5;
 /// The direction in which an edge leaves a node is measured over this many bead widths.
 const SIGHT: f64 = 0.5;
 /// Where two passes touch at a node, each keeps this many bead widths away from it.
 const ASIDE: f64 = 0.25;
-/// An end is held back from a node by at most this fraction of its edge.
+/// Greatest fraction of its edge by which an end is held back from a node.
 const MOST: f64 = 0.45;
 
 /// How ends are tied.
@@ -28,17 +28,17 @@ const MOST: f64 = 0.45;
 pub struct TieSettings {
     /// Which walls are thin.
     pub limits: ThinLimits,
-    /// How far an end stays away from the pass that continues there, in bead widths.
+    /// Distance of an end from the pass that continues there, in bead widths.
     pub end_gap: f64,
     /// Passes are made at least this long where possible, mm.
     pub shortest: f64,
 }
 
-/// Joins passes and walls into the fewest passes. Walls with which they would then cross, as in corners hardly wider than a
-/// bead, stay passes of their own.
+/// Joins passes and walls into the fewest passes. Walls that would then make them cross, as in corners hardly wider
+/// than a bead, stay separate passes.
 pub fn tie(passes: Vec<Path>, walls: &[ThinWall], settings: &TieSettings) -> Vec<Path> {
     let (mut joined, mut kept, mut loose) = (passes.clone(), Vec::new(), Vec::new());
-    // Half of them at a time, until each that crosses is alone.
+    // Halve the set until each wall that crosses is alone.
     let mut left = vec![walls];
     while let Some(some) = left.pop().filter(|some| !some.is_empty()) {
         let more: Vec<&ThinWall> = kept.iter().copied().chain(some).collect();
@@ -85,7 +85,7 @@ struct Line {
     closed: bool,
 }
 
-/// Where a wall meets a pass: the index of a piece, the fraction of it that lies before the place, and the node there.
+/// Where a wall meets a pass: the index of a piece, the fraction of it before the meeting point, and the node there.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     piece: usize,
@@ -117,13 +117,13 @@ impl Line {
         self.points.first().map_or(DVec2::X, |&here| (there - here).normalize_or(DVec2::X))
     }
 
-    /// Without its last `by` mm.
+    /// Removes its last `by` mm.
     fn cut_end(&mut self, by: f64) {
         self.points = polyline::without_end(std::mem::take(&mut self.points), by);
         self.widths.truncate(self.points.len().saturating_sub(1));
     }
 
-    /// Leaves its way `by` mm before its end for a place beside the end.
+    /// Leaves its course `by` mm before its end for a point beside the end.
     fn turn_off(&mut self, place: DVec2, by: f64) {
         let width = self.widths.last().copied();
         self.cut_end(by.min(MOST * self.length()));
@@ -136,7 +136,7 @@ impl Line {
 struct Graph {
     width: f64,
     nodes: Vec<DVec2>,
-    /// Nodes of the junctions of thin walls, by their numbers.
+    /// Nodes of the junctions of thin walls, by junction number.
     junctions: Vec<Option<usize>>,
     edges: Vec<(Line, [usize; 2])>,
 }
@@ -348,7 +348,7 @@ impl Graph {
     }
 }
 
-/// Drops the last nodes of a wall that has run beside the place where it is to end: going there would be a step back.
+/// Drops the last nodes of a wall that has run past the point where it is to end: going there would be a step back.
 fn without_step_back(wall: &mut Vec<Node>, end: DVec2) {
     while let [.., before, last] = wall[..]
         && (last.at - before.at).dot(end - last.at) < 0.0
@@ -368,7 +368,7 @@ struct Meeting {
     passed: usize,
 }
 
-/// Where a path first meets one of the lines; if it meets none, the place nearest to its start, within `reach` (mm).
+/// Where a path first meets one of the lines; if it meets none, the point nearest to its start, within `reach` (mm).
 fn meeting(path: &[DVec2], lines: &[Line], reach: f64) -> Option<Meeting> {
     let start = *path.first()?;
     let mut first: Option<(f64, Meeting)> = None;
@@ -399,7 +399,7 @@ fn meeting(path: &[DVec2], lines: &[Line], reach: f64) -> Option<Meeting> {
     first.or(nearest).map(|(_, met)| met)
 }
 
-/// Where two segments cross: the fraction of the first that lies before the crossing, and the place.
+/// Where two segments cross: the fraction of the first before the crossing, and the point.
 fn crossing(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Option<(f64, DVec2)> {
     let (r, s) = (b - a, d - c);
     let area = r.perp_dot(s);

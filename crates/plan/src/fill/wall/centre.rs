@@ -41,7 +41,7 @@ fn thinned(branch: &Branch, least: f64) -> Branch {
     Branch { nodes, ..*branch }
 }
 
-/// A line just long enough to be welded, across a part that is as long as it is wide.
+/// A line just long enough to be welded, across a part that is as long as wide.
 fn dot(disc: &Node) -> Line {
     let half = DVec2::X * 0.25 * disc.radius;
     let node = |at: DVec2| Node { at, radius: disc.radius };
@@ -117,7 +117,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// The nodes `reach` (mm) before and after node `i`; none where an open line ends first.
+    /// The nodes `reach` (mm) before and after node `i`; `None` if an open line ends first.
     fn around(&self, i: usize, reach: f64) -> Option<[Node; 2]> {
         Some([self.at(self.along[i] - reach)?, self.at(self.along[i] + reach)?])
     }

@@ -43,7 +43,7 @@ pub struct Graph {
     pub edges: Vec<Edge>,
 }
 
-/// A place on a line: the index of a segment, and the fraction of it that lies before the place.
+/// A position on a line: the index of a segment, and the fraction of it before the position.
 type Cut = (usize, f64);
 
 impl Edge {
@@ -139,7 +139,7 @@ impl Graph {
         }
         let mut edges: Vec<Option<Edge>> = edges.into_iter().map(Some).collect();
         for node in 0..places.len() {
-            // A loop at the node is there twice.
+            // A loop at the node is listed twice.
             let [a, b] = at[node][..] else { continue };
             let (Some(first), Some(second)) = (&edges[a], &edges[b]) else { continue };
             let toward = |edge: &Edge| edge.direction(edge.from == node, tolerance);
@@ -173,7 +173,7 @@ impl Graph {
     }
 }
 
-/// A line, with its first point repeated at the end if it is closed; none if it is a single point.
+/// A line with its first point repeated at the end if it is closed; `None` if it is a single point.
 fn opened(line: &Line) -> Option<Line> {
     let mut nodes = line.nodes.clone();
     nodes.dedup_by(|a, b| a.at == b.at);
@@ -183,7 +183,7 @@ fn opened(line: &Line) -> Option<Line> {
     (nodes.len() >= 2).then_some(Line { nodes, closed: line.closed })
 }
 
-/// Where lines cross others and themselves.
+/// Where lines cross each other and themselves.
 fn crossings(lines: &[Line]) -> Vec<Vec<Cut>> {
     let mut segments: Vec<(usize, usize, DVec2, DVec2)> = Vec::new();
     for (i, line) in lines.iter().enumerate() {
@@ -221,7 +221,7 @@ fn crossing(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Option<(f64, f64)> {
 /// A piece of a line: number of the line, number of the piece in it.
 type Piece = GeomWithData<rstar::primitives::Line<[f64; 2]>, (usize, usize)>;
 
-/// The pieces of all lines, to be found by their place.
+/// The pieces of all lines, searchable by position.
 fn pieces(lines: &[Line]) -> RTree<Piece> {
     let of = |(i, line): (usize, &Line)| {
         let piece = move |(k, w): (usize, &[Node])| {
@@ -232,7 +232,7 @@ fn pieces(lines: &[Line]) -> RTree<Piece> {
     RTree::bulk_load(lines.iter().enumerate().flat_map(of).collect())
 }
 
-/// The place nearest to `end` on every other line, if within the tolerance; cuts at a line's ends drop out later.
+/// The point nearest to `end` on every other line, if within the tolerance; cuts at a line's ends drop out later.
 fn touches(pieces: &RTree<Piece>, own: usize, end: DVec2, tolerance: f64) -> impl Iterator<Item = (usize, Cut)> + '_ {
     let mut nearest: BTreeMap<usize, (f64, Cut)> = BTreeMap::new();
     let near = pieces.locate_within_distance(end.to_array(), tolerance * tolerance * (1.0 + 1e-9));
@@ -241,7 +241,7 @@ fn touches(pieces: &RTree<Piece>, own: usize, end: DVec2, tolerance: f64) -> imp
         let share = ((end - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
         let (distance, (line, k)) = (end.distance(a.lerp(b, share)), piece.data);
         let best = nearest.entry(line).or_insert((distance, (k, share)));
-        // Of equally near pieces the first.
+        // Of equally near pieces, the first.
         if (distance, k) < (best.0, best.1.0) {
             *best = (distance, (k, share));
         }

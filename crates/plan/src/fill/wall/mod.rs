@@ -4,15 +4,15 @@
 //! | --- | --- |
 //! | the medial axis without corner branches, cut at corners | [`centre`] |
 //! | a graph of nodes and edges | [`graph`] |
-//! | edges led straight into their nodes, and smoothed by fitting | [`smooth`] |
+//! | edges extended straight into their nodes, and smoothed by fitting | [`smooth`] |
 //! | one bead or more along every edge, by its thickness | [`strand`] |
 //! | the fewest trails that lay all strands and never cross | [`trails`] |
 //! | corners rounded, junctions touched and left, ends held back | [`rounding`] |
 //!
 //! Every second layer runs all paths backwards, the last one first: it starts where the layer below ended.
 //!
-//! With one bead everywhere, a graph needs max(1, odd/2) arc starts per layer (odd: its nodes where an odd number of
-//! edges meet), the fewest possible. Where beads lie side by side, a path never turns from one into its neighbour to
+//! With one bead everywhere, a graph needs max(1, odd/2) arc starts per layer (odd: number of nodes where an odd number
+//! of edges meet), the fewest possible. Where beads lie side by side, a path never turns from one into its neighbour to
 //! save an arc start, except at the end of a wall: that would lay two hairpins next to each other.
 
 pub mod centre;
@@ -35,15 +35,15 @@ pub struct Wall;
 /// How walls are laid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WallSettings {
-    /// Ends and crossings nearer than this are one junction, mm.
+    /// Ends and crossings nearer than this become one junction, mm.
     pub tolerance: f64,
-    /// How far the centre-line may leave the medial axis, mm.
+    /// Greatest distance of the centre-line from the medial axis, mm.
     pub chord_error: f64,
     /// Radius of corners, in bead widths.
     pub corner_radius: f64,
-    /// How far paths that touch at a junction keep away from it, in bead widths.
+    /// Distance from a junction of paths that touch there, in bead widths.
     pub junction_gap: f64,
-    /// How far an end at a junction stays away from the paths that run through it, in bead widths.
+    /// Distance of an end at a junction from the paths that run through it, in bead widths.
     pub end_gap: f64,
     /// The narrowest and the widest bead of the process, mm.
     pub width_limits: (f64, f64),
@@ -77,7 +77,7 @@ impl Strategy for Wall {
 pub fn smooth_graph(lines: &[Line], settings: &FillSettings) -> Graph {
     let mut graph = Graph::of(lines, settings.wall.tolerance);
     smooth::straighten(&mut graph);
-    // A third of the error for the curve, a third for its chords, a third for the points dropped later.
+    // A third of the error for the curve, a third for its chords, a third for points dropped later.
     smooth::fit(&mut graph, settings.wall.chord_error / 3.0);
     graph
 }
@@ -96,7 +96,7 @@ pub fn along(lines: &[Line], settings: &FillSettings) -> Fill {
     Fill { stages: vec![passes], fixed_order: true }
 }
 
-/// Puts each path next to the end of the one before; closed ones run counter-clockwise.
+/// Puts each path next to the end of the previous one; closed ones run counter-clockwise.
 fn in_order(mut paths: Vec<Rounded>) -> Vec<Rounded> {
     paths.retain(|path| path.points.len() >= 2);
     let ring = |path: &Rounded| planar::Ring::new(path.points.iter().map(|p| p.at).collect()).area();
@@ -125,7 +125,7 @@ fn in_order(mut paths: Vec<Rounded>) -> Vec<Rounded> {
     ordered
 }
 
-/// The path as a pass; from one point to the next the mean of their widths holds.
+/// The path as a pass; from one point to the next the mean of their widths applies.
 fn pass(path: Rounded) -> Path {
     let points: Vec<DVec2> = path.points.iter().map(|p| p.at).collect();
     let mut widths: Vec<f64> = path.points.iter().map(|p| p.width).collect();

@@ -1,11 +1,11 @@
 //! Trails become paths: corners rounded, junctions touched and left again, ends held back.
 //!
-//! At a node a path leaves one strand and enters the next. If the two are in line, it just runs through. Otherwise it
-//! leaves the first a tangent length L before the corner and enters the second a length L after it, along a cubic with
-//! the tangents of both (between straight strands an arc of radius R = L cot(φ/2), φ the turn, to within 3·10⁻⁴ R). R
-//! is the corner radius; where other paths touch the junction too, R is made so large that the path keeps its distance
-//! from it, R (1/cos(φ/2) − 1), so that two passes that touch lay no metal twice. Paths that end at a junction stop
-//! before the metal of the others.
+//! At a node a path leaves one strand and enters the next. If the two are in line, it runs straight through. Otherwise
+//! it leaves the first a tangent length L before the corner and enters the second a length L after it, along a cubic
+//! with the tangents of both (between straight strands an arc of radius R = L cot(φ/2), φ the turn, to within 3·10⁻⁴
+//! R). R is the corner radius; if other paths touch the junction too, R is made so large that the path keeps its
+//! distance from it, R (1/cos(φ/2) − 1), so that two passes that touch lay no metal twice. Paths that end at a junction
+//! stop before the metal of the others.
 
 use super::WallSettings;
 use super::strand::{Point, Strand};
@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 const STRAIGHT: f64 = 8.0 * PI / 180.0;
 /// Larger turns lead back along the neighbouring strand, rad (150°).
 const BACK: f64 = 150.0 * PI / 180.0;
-/// At most this fraction of a strand is given up to a curve or gap at either end.
+/// Greatest fraction of a strand given up to a curve or gap at either end.
 const MOST: f64 = 0.45;
 /// A curve around a corner begins at most this many bead widths before it.
 const LONGEST: f64 = 3.0;
@@ -69,7 +69,7 @@ fn touched(network: &Network, trails: &[Trail]) -> Vec<bool> {
     touched
 }
 
-/// For each dart, whether other strands meet it at its node.
+/// For each dart, whether other strands also meet its node.
 fn shared_ends(network: &Network) -> Vec<bool> {
     let mut shared = vec![false; 2 * network.walls.len()];
     for star in network.stars.iter().filter(|star| star.len() > 1) {
@@ -197,7 +197,7 @@ fn halves(points: &[Point]) -> (Vec<Point>, Vec<Point>) {
     (first, second)
 }
 
-/// The direction in which a line ends, judged over its last `reach`, mm.
+/// The direction in which a line ends, taken over its last `reach`, mm.
 fn end_way(points: &[Point], reach: f64) -> DVec2 {
     let Some(end) = points.last() else { return DVec2::X };
     let mut left = reach;
@@ -293,7 +293,7 @@ fn hold_back(
     }
 }
 
-/// The pieces of a path; of the path being shortened, only those more than a given length (mm) from its start or end.
+/// The pieces of a path; for the path being shortened, only those more than a given length (mm) from its start or end.
 fn segments(path: &Rounded, own: Option<(bool, f64)>) -> Vec<[DVec2; 2]> {
     let again = path.closed.then(|| path.points.first()).flatten();
     let mut points: Vec<Point> = path.points.iter().chain(again).copied().collect();

@@ -1,9 +1,9 @@
 //! Edges made smooth: straight into their nodes, and fitted.
 //!
-//! Near a corner or a junction the medial axis leaves the middle of the walls, since the disc reaches into the room
-//! where they meet. There the disc's radius falls on the way out of the node. An edge keeps only what lies beyond that
-//! stretch and continues straight to the node, which is moved to where these lines come nearest to each other (least
-//! squares). The thickness along the straight stretch is that of the wall.
+//! Near a corner or a junction the medial axis leaves the middle of the walls, since the disc extends into the space
+//! where they meet. There the disc's radius decreases away from the node. An edge keeps only what lies beyond that
+//! section and continues straight to the node, which is moved to where these lines come nearest to each other (least
+//! squares). The thickness along the straight section is that of the wall.
 
 use super::graph::Graph;
 use bead_part::curve::Nurbs;
@@ -11,7 +11,7 @@ use glam::{DMat2, DVec2, DVec3};
 use planar::medial::Node;
 use planar::polyline::distance_squared_to_segment;
 
-/// Where the radius falls by less than this per mm, it is that of the wall.
+/// Where the radius decreases by less than this per mm, it is that of the wall.
 const LEVEL: f64 = 0.02;
 /// The wall counts as undisturbed only this much farther on, in radii: the radius levels off slowly.
 const MARGIN: f64 = 0.4;
@@ -24,7 +24,7 @@ const MOST: f64 = 0.45;
 
 /// Nodes are at most this many radii apart when a curve is fitted to them.
 const STEP: f64 = 0.5;
-/// Steps between two nodes at most.
+/// Most steps between two nodes.
 const MOST_STEPS: f64 = 1000.0;
 /// A fitted curve that strays from the nodes by more than this many tolerances is not used.
 const STRAY: f64 = 4.0;
@@ -53,8 +53,8 @@ pub fn straighten(graph: &mut Graph) {
     }
 }
 
-/// Removes the nodes near the first one, as far as the radius falls. Returns where the wall begins, and its direction
-/// from there to the node.
+/// Removes the nodes near the first one, as long as the radius decreases. Returns where the wall begins, and its
+/// direction from there to the node.
 fn shorten(nodes: &mut Vec<Node>) -> Option<(DVec2, DVec2)> {
     let radius = nodes.first()?.radius;
     let mut along = vec![0.0];
@@ -71,7 +71,7 @@ fn shorten(nodes: &mut Vec<Node>) -> Option<(DVec2, DVec2)> {
         nodes[i].radius - nodes[far].radius > LEVEL * (along[far] - along[i])
     };
     let level = (0..nodes.len()).find(|&i| along[i] > limit || !falls(i))?;
-    // Where the radius does not fall, nothing is disturbed.
+    // Where the radius does not decrease, nothing is disturbed.
     let undisturbed = if level == 0 { 0.0 } else { (along[level] + MARGIN * nodes[level].radius).min(limit) };
     let first = along.partition_point(|&s| s < undisturbed).min(nodes.len() - 1);
     let (wall, far) = (nodes[first], nodes[ahead(first)]);
@@ -80,8 +80,8 @@ fn shorten(nodes: &mut Vec<Node>) -> Option<(DVec2, DVec2)> {
     Some((wall.at, way))
 }
 
-/// The place with the least sum of squared distances from lines, each a point and a direction; `fallback` where they
-/// are parallel or meet far away.
+/// The point with the least sum of squared distances from lines, each a point and a direction; `fallback` if they are
+/// parallel or meet far away.
 fn nearest_to(lines: &[(DVec2, DVec2)], fallback: DVec2) -> DVec2 {
     let mut matrix = DMat2::ZERO;
     let mut right = DVec2::ZERO;
@@ -99,7 +99,7 @@ fn nearest_to(lines: &[(DVec2, DVec2)], fallback: DVec2) -> DVec2 {
     if place.distance(fallback) <= reach.max(1e-6) { place } else { fallback }
 }
 
-/// Leads an edge straight from a node to where its wall begins; the thickness is that of the wall.
+/// Extends an edge straight from a node to where its wall begins; the thickness is that of the wall.
 fn lead_to(nodes: &mut Vec<Node>, place: DVec2, straight: bool) {
     let Some(&wall) = nodes.first() else { return };
     if !straight {
@@ -116,7 +116,7 @@ fn lead_to(nodes: &mut Vec<Node>, place: DVec2, straight: bool) {
 }
 
 /// Fits a smooth curve to every edge, position and thickness together, within `error` (mm), and replaces the edge by
-/// chords that deviate from the curve by no more than that. Edges that cannot be fitted stay as they are.
+/// chords that deviate from the curve by at most that. Edges that cannot be fitted are unchanged.
 pub fn fit(graph: &mut Graph, error: f64) {
     let degrees = graph.degrees();
     let rings: Vec<bool> = graph.edges.iter().map(|edge| graph.is_ring(edge, &degrees)).collect();
@@ -129,7 +129,7 @@ pub fn fit(graph: &mut Graph, error: f64) {
     }
 }
 
-/// A smooth line near nodes, as nodes; `None` where there is none that stays near them throughout.
+/// A smooth line near nodes, as nodes; `None` if none stays near them throughout.
 fn fitted(nodes: &[Node], closed: bool, error: f64) -> Option<Vec<Node>> {
     let mut points: Vec<DVec3> = dense(nodes).map(|node| node.at.extend(2.0 * node.radius)).collect();
     if closed {
@@ -141,7 +141,7 @@ fn fitted(nodes: &[Node], closed: bool, error: f64) -> Option<Vec<Node>> {
     stays_near(&smooth, nodes, STRAY * error).then_some(smooth)
 }
 
-/// The nodes with more of them between those that lie far apart: between its points a fitted curve is not constrained.
+/// The nodes with more inserted between those far apart: between its points a fitted curve is unconstrained.
 fn dense(nodes: &[Node]) -> impl Iterator<Item = Node> + '_ {
     let between = nodes.windows(2).flat_map(|w| {
         let (a, b) = (w[0], w[1]);
@@ -161,7 +161,7 @@ fn stays_near(line: &[Node], nodes: &[Node], tolerance: f64) -> bool {
     let mut pieces = nodes.windows(2).enumerate().cycle();
     let mut now = pieces.next();
     line.iter().all(|node| {
-        // Usually the piece of the node before, or the next one.
+        // Usually it is the same piece as for the previous node, or the next one.
         let found = (0..nodes.len()).find(|_| {
             let fits = now.is_some_and(|(_, piece)| near(node.at, piece));
             if !fits {

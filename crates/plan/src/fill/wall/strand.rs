@@ -12,7 +12,7 @@ use crate::fill::trails::{Dart, Network};
 use glam::DVec2;
 use planar::medial::Node;
 
-/// No wall gets more beads side by side than this.
+/// Most beads side by side in a wall.
 const MOST_BEADS: usize = 1000;
 /// Widths are rounded to this fraction of a bead width, so that equal walls get equal beads.
 const GRAIN: f64 = 0.01;
@@ -20,7 +20,7 @@ const GRAIN: f64 = 0.01;
 /// A point of a strand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Where, mm.
+    /// Position, mm.
     pub at: DVec2,
     /// Bead width, mm.
     pub width: f64,
@@ -50,7 +50,7 @@ pub fn strands(graph: &Graph, settings: &FillSettings) -> (Vec<Strand>, Network)
         let [out, back] = [true, false].map(|forward| edge.direction(forward, reach).to_angle());
         let ring = graph.is_ring(edge, &degrees);
         for j in 0..count {
-            // From the right to the left of the edge; seen from its far end, the other way round.
+            // From the right of the edge to the left; seen from its far end, the reverse.
             let side = j as f64 - (count - 1) as f64 / 2.0;
             let dart = 2 * strands.len();
             stars[edge.from].push((dart, (out, side)));
@@ -96,7 +96,7 @@ fn beside(edge: &Edge, side: f64, count: usize, ring: bool, settings: &FillSetti
     simplified(&points, settings.wall.chord_error / 3.0)
 }
 
-/// Drops the points that stretches of one width do not need within `tolerance` (mm).
+/// Drops points that are not needed within `tolerance` (mm), along sections of one width.
 fn simplified(points: &[Point], tolerance: f64) -> Vec<Point> {
     let mut kept = Vec::with_capacity(points.len());
     for stretch in points.chunk_by(|a, b| a.width == b.width) {

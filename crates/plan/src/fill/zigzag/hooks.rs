@@ -1,23 +1,23 @@
 //! Line ends that hook along the boundary where they are not linked.
 //!
-//! Where lines meet an edge at an angle φ, their ends lie d/sin φ apart along it. A link covers every second of these gaps;
-//! below about 60°, the round ends on either side of the others leave a wedge bare, and so they do beside a hole
-//! that begins between two lines. Of the two ends beside such a gap, one has an obtuse corner between line and boundary.
-//! There the path leaves its line early, meets the boundary ahead of the end, in the gap, and comes back along it, or
-//! does the same in reverse. Where a path begins or ends, it comes or goes on along the boundary instead.
+//! Where lines meet an edge at an angle φ, their ends lie d/sin φ apart along it. A link covers every second of these
+//! gaps. Below about 60°, the round ends on either side of the other gaps leave a wedge bare; so they do beside a hole
+//! that begins between two lines. Of the two ends beside such a gap, one has an obtuse corner between line and
+//! boundary. There the path leaves its line early, meets the boundary ahead of the end, in the gap, and comes back
+//! along it, or does the same in reverse. At the beginning or end of a path, it follows the boundary instead.
 //!
-//! Sharp corners are blunted: both of their sides lay metal there.
+//! Sharp corners are blunted, because both of their sides lay metal there.
 //!
-//! All of this is ours; the lines of Liu et al. 2022 end straight. The numbers are those that leave the least void and
-//! overfill in the deposit model at the distances of the paper (0.738 w between lines, 0.591 w to the contour), at edges
-//! that meet the lines at 15° to 90°.
+//! All of this is ours; the lines of Liu et al. 2022 end straight. The constants are those that leave the least void
+//! and overfill in the deposit model at the distances of the paper (0.738 w between lines, 0.591 w to the contour), at
+//! edges that meet the lines at 15° to 90°.
 
 use super::regions::Weave;
 use glam::DVec2;
 use planar::scan::{End, Neighbour, Scan};
 use planar::{PerRow, polyline};
 
-/// A hook reaches until the boundary comes this near to the next line, in bead widths, less [`SHORTER`].
+/// A hook extends until the boundary comes this near to the next line, in bead widths, less [`SHORTER`].
 const NEAR: f64 = 0.42;
 /// The round end of a hook, in bead widths.
 const SHORTER: f64 = 0.2;
@@ -25,15 +25,15 @@ const SHORTER: f64 = 0.2;
 const SHORTEST: f64 = 0.14;
 /// Around a local extreme of the boundary, shorter ones are left out, in bead widths.
 const SHORTEST_AROUND: f64 = 0.3;
-/// Room beyond the last line that is worth a bead, in bead widths.
+/// Space beyond the last line that is worth a bead, in bead widths.
 const DEEP: f64 = 0.5;
 /// A path leaves its line this far before the end, in bead widths.
 const EARLY: f64 = 1.5;
-/// But no farther than this part of the line.
+/// But at most this fraction of the line before its end.
 const MOST_OF_LINE: f64 = 0.4;
-/// Where the way back to the line is blocked, a hook is tried again with this part of its length.
+/// Where the way back to the line is blocked, a hook is retried with this fraction of its length.
 const AGAIN: f64 = 0.6;
-/// How often.
+/// Number of retries.
 const TRIES: usize = 3;
 /// Corners that turn by more than this are blunted, radians.
 const SHARP: f64 = 1.0;
@@ -47,14 +47,14 @@ enum Towards {
     Above,
 }
 
-/// Where on a path, which leads up from line to line.
+/// Position of a hook on a path, which leads up from line to line.
 #[derive(Clone, Copy)]
 pub(super) enum Place {
     /// Before its first line.
     Begin,
-    /// Behind the end at which a line begins: a hook towards the next line.
+    /// At the end where a line begins: a hook towards the next line.
     Above,
-    /// Ahead of the end at which a line ends: a hook from the line before.
+    /// At the end where a line ends: a hook from the line before.
     Below,
     /// After its last line.
     Finish,
@@ -65,16 +65,16 @@ pub(super) struct Hooks<'a> {
     weave: &'a Weave<'a>,
     /// Bead width, mm.
     width: f64,
-    /// Where each line lies, mm; `None` for one outside the region.
+    /// y of each line, mm; `None` for one outside the region.
     lines: Vec<Option<f64>>,
     edges: Edges,
 }
 
-/// The way along the boundary from an end of a span.
+/// The course along the boundary from an end of a span.
 struct Along {
-    /// From the end itself.
+    /// The points, starting at that end.
     way: Vec<DVec2>,
-    /// How far a bead is wanted, mm.
+    /// Length over which a bead is wanted, mm.
     reach: f64,
     /// Whether it leads to the other end of the same span: around the last line of a region.
     around_last: bool,
@@ -105,7 +105,7 @@ impl<'a> Hooks<'a> {
         }
     }
 
-    /// The way along the boundary where a path begins or ends.
+    /// The course along the boundary where a path begins or ends.
     fn run(&self, span: usize, end: End, towards: Towards) -> Vec<DVec2> {
         let way = self.along(span, end, towards).map(|along| along.up_to(along.reach));
         way.map_or_else(Vec::new, |mut way| way.split_off(1))
@@ -125,7 +125,7 @@ impl<'a> Hooks<'a> {
         })
     }
 
-    /// How far a bead along the boundary is wanted from an end of a span; `None` if nowhere.
+    /// The course over which a bead along the boundary is wanted from an end of a span; `None` if nowhere.
     fn along(&self, span: usize, end: End, towards: Towards) -> Option<Along> {
         let scan = self.weave.scan;
         let to = scan.neighbour(span, end, towards == Towards::Above)?;
@@ -161,7 +161,7 @@ impl<'a> Hooks<'a> {
         farther > right || farther.abs() <= right && towards == Towards::Below
     }
 
-    /// Length of a way until it comes near to the line at `next`, mm.
+    /// Length of a course until it comes near the line at `next`, mm.
     fn until_near(&self, way: &[DVec2], next: Option<f64>) -> f64 {
         let Some(next) = next else { return f64::INFINITY };
         let (near, mut length) = (NEAR * self.width, 0.0);
@@ -192,7 +192,7 @@ impl<'a> Hooks<'a> {
     }
 }
 
-/// Out of the region along the lines.
+/// Direction out of the region along the lines: −1 or 1.
 fn outward(end: End) -> f64 {
     match end {
         End::Left => -1.0,
@@ -207,7 +207,7 @@ impl Along {
     }
 }
 
-/// The boundary, by rows as high as a bead is wide.
+/// The boundary, binned in rows one bead width high.
 struct Edges {
     low: f64,
     height: f64,
@@ -225,9 +225,9 @@ impl Edges {
         Self { low, height, rows: PerRow::grouped(count, each) }
     }
 
-    /// Whether a straight cut stays off the boundary until it ends on it.
+    /// Whether a straight cut stays clear of the boundary until it ends on it.
     fn clear(&self, foot: DVec2, tip: DVec2) -> bool {
-        /// The last bit, where the cut meets the boundary.
+        /// The last fraction, where the cut meets the boundary.
         const MEETS: f64 = 1e-3;
         let end = tip.lerp(foot, MEETS);
         let row = |y: f64| ((y - self.low) / self.height).max(0.0) as usize;

@@ -32,7 +32,7 @@ pub struct SubRegion {
 }
 
 impl SubRegion {
-    /// The side of the last line on which a way ends if it enters the first line at `entry`.
+    /// The side of the last line on which a sub-region ends if it is entered on side `entry` of the first line.
     fn exit(&self, entry: End) -> End {
         if self.spans.len() % 2 == 1 { entry.other() } else { entry }
     }
@@ -87,7 +87,7 @@ impl<'a> Weave<'a> {
         &self.regions
     }
 
-    /// Every sub-region by itself, in scan order, entered on the left.
+    /// Every sub-region on its own, in scan order, entered on the left.
     pub fn apart(&self) -> Vec<Way> {
         (0..self.regions.len()).map(|region| vec![(region, End::Left)]).collect()
     }
@@ -108,13 +108,13 @@ impl<'a> Weave<'a> {
         (0..self.regions.len()).filter(|&region| !follows[region]).map(way).collect()
     }
 
-    /// Whether the way out of one sub-region is the way into the next.
+    /// Whether the exit of one sub-region is the entry of the next.
     fn merges(&self, joint: &Joint, entries: &[End]) -> bool {
         self.regions[joint.lower].exit(entries[joint.lower]) == joint.side && entries[joint.upper] == joint.side
     }
 
-    /// The end by which each sub-region is entered, chosen so that as many as possible merge: single sub-regions, from the lowest up,
-    /// and then both sides of each joint are switched as long as more merge.
+    /// The entry side of each sub-region, chosen so that as many as possible merge: single sub-regions, from the lowest
+    /// up, and then both sides of each joint are switched as long as more merge.
     fn choose_entries(&self) -> Vec<End> {
         let mut entries = vec![End::Left; self.regions.len()];
         let mut of: Vec<Vec<usize>> = vec![Vec::new(); self.regions.len()];
@@ -147,12 +147,13 @@ impl<'a> Weave<'a> {
         }
     }
 
-    /// The points of some ways, mm.
+    /// The points of each way, mm.
     pub fn paths(&self, ways: &[Way]) -> Vec<Vec<DVec2>> {
         ways.iter().map(|way| self.path(way, None)).collect()
     }
 
-    /// The same, with line ends that hook along the boundary on the side that is not linked; `width` of a bead, mm.
+    /// The same, with line ends that hook along the boundary on the side that is not linked; `width` is that of a bead,
+    /// mm.
     pub fn hooked(&self, ways: &[Way], width: f64) -> Vec<Vec<DVec2>> {
         let hooks = Hooks::new(self, width);
         ways.iter().map(|way| self.path(way, Some(&hooks))).collect()
