@@ -6,7 +6,7 @@
 //! | [`program`] | instructions: straight moves and arcs, arc on and off, layer by layer |
 //! | [`dialect`] | one folder per language: KRL, RAPID, FANUC TP, INFORM, URScript, G-code |
 //! | [`number`] | numbers written as controllers and tables accept them |
-//! | [`template`] | pages and texts with places for values |
+//! | [`template`] | pages and texts with placeholders |
 
 pub mod dialect;
 pub mod number;

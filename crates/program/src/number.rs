@@ -1,7 +1,6 @@
 //! Numbers as programs and files need them: fixed decimals, a point, no exponent, no negative zero.
 
-/// Appends `value` with this many decimals (at most 9). What is not finite is written as 0; callers keep such
-/// values out.
+/// Appends `value` with this many decimals (at most 9). Non-finite values are written as 0; callers keep them out.
 ///
 /// ```
 /// use bead_program::number::push_fixed;
@@ -33,7 +32,7 @@ pub fn push_fixed(text: &mut String, value: f64, decimals: usize) {
     text.push_str(std::str::from_utf8(&number.bytes[number.start..]).unwrap_or_default());
 }
 
-/// A number written from its last digit to its first; a sign, twenty digits and a point at most.
+/// A number written from its last digit to its first; at most a sign, twenty digits and a point.
 struct Number {
     bytes: [u8; 24],
     start: usize,
@@ -41,7 +40,7 @@ struct Number {
 }
 
 impl Number {
-    /// Writes the last digits of what is left.
+    /// Writes the last digits of the remaining number.
     fn take(&mut self, digits: usize) {
         for _ in 0..digits / 2 {
             let pair = (self.left % 100) as u8;
@@ -77,10 +76,10 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     text
 }
 
-/// The nearest whole number, halves away from zero, as `f64::round` gives it, except for numbers a hair below a half;
-/// without a call into the mathematics library.
+/// The nearest whole number, halves away from zero, like `f64::round` except for numbers minutely below a half; without
+/// a call into the maths library.
 pub fn rounded(value: f64) -> f64 {
-    /// From here on numbers are whole.
+    /// Numbers from here on are whole.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     if value.abs() < WHOLE { (value + 0.5_f64.copysign(value)) as i64 as f64 } else { value }
 }

@@ -1,9 +1,9 @@
-//! The neutral program: moves, arc on, arc off, wire feed, waits. Posts turn it into a controller's language.
+//! The neutral program: moves, arc on, arc off, wire feed, waits. Dialects turn it into a controller's language.
 //!
 //! Coordinates are rounded to [`RESOLUTION_MM`] here, once, and points closer than [`MIN_MOVE_MM`] to the last one are
 //! dropped: a weld move of zero length burns through. Then, if requested, straight pieces and circular arcs are fitted
-//! within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves and no
-//! arc: `Weld` is then only a move along the path, since no `ArcOn` came before it.
+//! within a tolerance ([`Programmer::with_fit`]): fewer moves along the same path. A dry run has the same moves without
+//! arc: `Weld` is then just a move along the path, since no `ArcOn` precedes it.
 
 mod attitude;
 mod machine;
@@ -64,7 +64,7 @@ pub enum Instruction {
         /// Tool point, mm.
         to: DVec3,
     },
-    /// A pass begins; the torch is above the part, or anywhere where a program begins at this pass.
+    /// A pass begins; the torch is above the part, or anywhere if the program begins at this pass.
     PassStart {
         /// Number of the pass in its layer, from 1.
         pass: usize,
@@ -73,8 +73,8 @@ pub enum Instruction {
         /// The attitude of torch and part on the way to the start and there.
         attitude: Attitude,
     },
-    /// The torch is above the start of the pass. What came since `PassStart` led there from the pass before; a program
-    /// that begins at this pass does without it.
+    /// The torch is above the start of the pass. The instructions since `PassStart` led there from the previous pass; a
+    /// program that begins at this pass skips them.
     Above,
     /// The pass is done; the torch is above the part.
     PassEnd,
@@ -85,15 +85,15 @@ pub enum Instruction {
         /// What the pass is for.
         kind: PassKind,
     },
-    /// The wire feed from here on; nominal at first. It appears where the wire feed changes, and only in programs whose
-    /// profile lets it change.
+    /// The wire feed from here on; nominal at first. Written where the wire feed changes, and only in programs whose
+    /// profile allows it to change.
     WireFeed {
         /// Multiple of the nominal wire feed.
         ratio: f64,
     },
     /// The attitude of torch and part at the end of the next move and from there on.
     Turn {
-        /// It.
+        /// The attitude.
         attitude: Attitude,
     },
     /// A move with the arc on.
@@ -113,7 +113,7 @@ pub enum Instruction {
     Crater {
         /// How long, s.
         seconds: f64,
-        /// The wire feed meanwhile, as a fraction of the nominal wire feed; `None` where it stays as it is.
+        /// The wire feed meanwhile, as a fraction of the nominal wire feed; `None` if it is unchanged.
         ratio: Option<f64>,
     },
     /// Ends the arc.
@@ -129,7 +129,7 @@ pub enum Instruction {
 }
 
 impl Instruction {
-    /// Where it moves the torch, mm; `None` where it does not.
+    /// The point to which it moves the torch, mm; `None` if it does not move.
     pub fn target(&self) -> Option<DVec3> {
         match *self {
             Self::Approach { to } | Self::Travel { to } | Self::Retract { to } | Self::Weld { to, .. } => Some(to),
@@ -137,7 +137,7 @@ impl Instruction {
         }
     }
 
-    /// The attitude that it sets.
+    /// The attitude it sets.
     fn attitude_mut(&mut self) -> Option<&mut Attitude> {
         match self {
             Self::PassStart { attitude, .. } | Self::Turn { attitude } | Self::Weld { attitude, .. } => Some(attitude),
@@ -145,7 +145,7 @@ impl Instruction {
         }
     }
 
-    /// The attitude of torch and part from here on; `None` where it does not change.
+    /// The attitude of torch and part from here on; `None` if it does not change.
     pub fn attitude(&self) -> Option<Attitude> {
         match *self {
             Self::PassStart { attitude, .. } | Self::Turn { attitude } | Self::Weld { attitude, .. } => Some(attitude),
@@ -199,19 +199,19 @@ pub struct LayerProgram {
     pub index: usize,
     /// Top of the layer, mm.
     pub z: f64,
-    /// What to do.
+    /// Instructions in order.
     pub instructions: Vec<Instruction>,
 }
 
-/// Turns layers into instructions, remembering where the torch is.
+/// Turns layers into instructions, keeping track of the torch.
 #[derive(Debug, Clone)]
 pub struct Programmer {
     torch: Torch,
-    /// Whether instructions are taken from the layer's chart to space.
+    /// Whether instructions are transformed from the layer's chart to space.
     placed: bool,
     fit: Option<Fit>,
     speed_tolerance: f64,
-    /// The wire feed as last set, as a multiple of the nominal one; `None` where that is not known.
+    /// The wire feed last set, as a multiple of the nominal one; `None` if unknown.
     feed: Option<f64>,
     sets_feed: bool,
     /// Whether programs may begin at any pass.
@@ -221,12 +221,12 @@ pub struct Programmer {
     tilt: Option<Tilt>,
     table: Option<Follower>,
     positioner: Option<Holder>,
-    /// How the torch swings, where that is written as moves.
+    /// The weave, if it is written as moves.
     weave: Option<Weave>,
 }
 
 impl Programmer {
-    /// Programs passes as they are planned; travels run `clearance` (mm) above the higher of their ends.
+    /// Programs passes as planned; travels run `clearance` (mm) above the higher of their ends.
     pub fn new(clearance: f64) -> Self {
         let torch = Torch::new(clearance);
         Self {
@@ -246,7 +246,7 @@ impl Programmer {
         }
     }
 
-    /// Programs passes as they are welded; a dry run has the same moves and no arc.
+    /// Programs passes as welded; a dry run has the same moves without arc.
     pub fn of(weld: &WeldSettings, program: &ProgramSettings, dry: bool) -> Self {
         let other_layers = !weld.process.layers.is_empty();
         let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker() || other_layers;
@@ -258,7 +258,7 @@ impl Programmer {
         programmer.with_fit(program)
     }
 
-    /// The same programmer, but the torch swings by moves of its own.
+    /// The same programmer, but with the weave written as moves.
     pub fn woven(self, weave: Option<&Weave>) -> Self {
         Self { weave: weave.cloned(), ..self }
     }
@@ -277,7 +277,7 @@ impl Programmer {
     pub fn with_fit(mut self, program: &ProgramSettings) -> Self {
         // Dropping close points may already have moved the path by this much.
         let tolerance = program.chord_tolerance - MIN_MOVE_MM;
-        // Merging points and fitting pieces each take half of it.
+        // Merging points and fitting pieces each use half of the rest.
         let time = program.min_point_time;
         self.spread = (time > 0.0 && tolerance > 0.0).then_some(Spread { time, tolerance: tolerance / 2.0 });
         let tolerance = if self.spread.is_some() { tolerance / 2.0 } else { tolerance };
@@ -309,7 +309,7 @@ impl Programmer {
         self.layer_from(layer, 0)
     }
 
-    /// The same from the pass with the index `first` on, for a build that was stopped there.
+    /// The same, beginning at the pass with index `first`, for a build that was stopped there.
     pub fn layer_from(&mut self, layer: &Layer, first: usize) -> LayerProgram {
         let mut instructions = Vec::with_capacity(layer.passes.iter().map(|p| p.points.len() + 6).sum());
         self.pass_over(layer);
@@ -332,12 +332,12 @@ impl Programmer {
         LayerProgram { index: layer.index, z: layer.z, instructions }
     }
 
-    /// How long travels have waited for the axes of a positioner so far, s.
+    /// Time that travels have waited for the axes of a positioner so far, s.
     pub fn waited(&self) -> f64 {
         self.positioner.as_ref().map_or(0.0, Holder::waited)
     }
 
-    /// Takes note of a layer that another program lays; the torch leans with the walls built on it.
+    /// Takes note of a layer that is not programmed here; the torch leans with the walls built on it.
     pub fn pass_over(&mut self, layer: &Layer) {
         self.tilt.iter_mut().for_each(|tilt| tilt.enter(layer));
     }
@@ -345,13 +345,13 @@ impl Programmer {
     fn pause(&self, pause: Pause, out: &mut Vec<Instruction>) {
         out.extend((pause.length > 0.0).then_some(Instruction::Travel { to: pause.at }));
         match out.last_mut() {
-            // The wait of the layer and that of its first pass are one.
+            // The waits of the layer and of its first pass are combined.
             Some(Instruction::Dwell { seconds }) => *seconds += pause.seconds,
             _ => out.push(Instruction::Dwell { seconds: pause.seconds }),
         }
     }
 
-    /// A pass, after what comes before the first one of its layer if that is still due.
+    /// Programs a pass, preceded by what its layer still requires before the first one.
     fn pass(&mut self, number: usize, pass: &Pass, begun: &mut Begun, out: &mut Vec<Instruction>) {
         let mut moves = distinct(path(pass, self.torch.ends()));
         level_paces(&mut moves, self.speed_tolerance);
@@ -372,7 +372,7 @@ impl Programmer {
         let lit = self.torch.lit();
         let Begun { transfer, pause } = std::mem::take(begun);
         let pauses = [pause, self.torch.wait(pass.wait)];
-        // From another body the torch comes straight from above.
+        // From another body the torch comes down from directly above.
         let over = before.filter(|_| transfer.is_some()).map_or(start.z, |at| at.z);
         let mut legs = self.torch.approach(start).legs;
         let above = start.with_z(legs.iter().map(|to| to.z).fold(over, f64::max));
@@ -419,7 +419,7 @@ impl Programmer {
             out.extend(placed::placed(of_chart, &sheet, before));
         }
         if let Some(transfer) = transfer.filter(|_| self.placed) {
-            // The pass has begun.
+            // From here the pass has begun.
             let first = own + 1;
             let moves: Vec<Instruction> = placed::transferred(&transfer).collect();
             let there = moves.iter().rev().find_map(Instruction::target);
@@ -435,7 +435,7 @@ impl Programmer {
         }
     }
 
-    /// How a path is run: as swings, as pieces that fit it, or as all its moves.
+    /// The pieces in which a path is executed: as a weave, as fitted pieces, or as all its moves.
     fn pieces(&self, moves: &[(DVec3, f64)], leans: &[DVec2]) -> Vec<Stretch> {
         let speed = |end: usize| self.torch.speed_at(moves[end].1);
         if let Some(weave) = &self.weave {
@@ -451,7 +451,7 @@ impl Programmer {
         }
     }
 
-    /// Sets the wire feed, as a multiple of the nominal one, where it changes.
+    /// Sets the wire feed, as a multiple of the nominal one, if it changes.
     fn set_feed(&mut self, ratio: f64, out: &mut Vec<Instruction>) {
         if self.sets_feed && self.feed != Some(ratio) {
             self.feed = Some(ratio);
@@ -460,8 +460,8 @@ impl Programmer {
     }
 }
 
-/// Gives neighbouring moves whose paces differ by no more than the fraction `tolerance` a common pace: the one that
-/// takes the same time over all of them, and so lays the same metal.
+/// Gives neighbouring moves whose paces differ by at most the fraction `tolerance` a common pace: the one that takes
+/// the same time over all of them, and so lays the same metal.
 fn level_paces(moves: &mut [(DVec3, f64)], tolerance: f64) {
     let mut start = 1;
     while tolerance > 0.0 && start < moves.len() {
@@ -483,13 +483,13 @@ fn level_paces(moves: &mut [(DVec3, f64)], tolerance: f64) {
     }
 }
 
-/// A piece that is run.
+/// A piece as executed.
 struct Stretch {
-    /// Index of the move of the path in which it ends.
+    /// Index of the path's move at which it ends.
     end: usize,
     to: DVec3,
     circle: Option<Circle>,
-    /// mm/s
+    /// Speed, mm/s.
     speed: f64,
 }
 
@@ -519,7 +519,7 @@ fn fitted(moves: &[(DVec3, f64)], leans: &[DVec2], fit: &Fit) -> Vec<(usize, Opt
     out
 }
 
-/// A point as programs write it.
+/// A point rounded as in programs.
 fn rounded(p: DVec3) -> DVec3 {
     DVec3::from_array(p.to_array().map(|v| number::rounded(v / RESOLUTION_MM) * RESOLUTION_MM))
 }

@@ -1,7 +1,7 @@
 //! Dialects: the languages of controllers. A neutral program is written in one of them, and programs in any of them are
 //! read back.
 //!
-//! A dialect consists of a folder, named above, and a line in the table below. The folder holds
+//! A dialect consists of a folder, declared above, and a line in the table below. The folder holds
 //!
 //! | file | what it is |
 //! | --- | --- |
@@ -41,7 +41,8 @@ pub struct Dialect {
     pub name: &'static str,
     /// The language as people write it; dialects of one language are read in the same way.
     pub language: &'static str,
-    /// Extensions of the files in which a main program's modules may be, such as `src`; none where one file holds everything.
+    /// Extensions of the files that may hold a main program's modules, such as `src`; empty if one file holds
+    /// everything.
     pub module_extensions: &'static [&'static str],
     /// Whether it writes the linear axis of the robot.
     pub linear_axis: bool,
@@ -70,34 +71,35 @@ pub trait Section {
     /// Keys and lines of the templates.
     fn templates(&self) -> Templates<'_>;
 
-    /// Whether it can write what only some dialects can.
+    /// Whether it can write a feature that only some dialects can.
     fn supports(&self, _extra: Extra) -> bool {
         false
     }
 
-    /// The lines at other places of programs, if the dialect has them.
+    /// The profile's lines at other places of programs, if the dialect has them.
     fn hooks(&self) -> Option<&Hooks> {
         None
     }
 
-    /// Whether the torch stands still until the arc is steady (`process.arc_start_delay`), so that it may then leave at any time.
+    /// Whether the torch stands still until the arc is steady (`process.arc_start_delay`), so that it may then move off
+    /// at any time.
     fn stands_at_start(&self) -> bool {
         self.templates().iter().any(|(key, lines)| key.ends_with(".arc_on") && stands(lines))
     }
 
-    /// How long the torch stands still at the end of a pass, crater filling of `[start_stop]` not counted, s, where the data of
-    /// the section determine it and not `process.arc_end_delay`.
+    /// Time that the torch stands still at the end of a pass, s, without the crater filling of `[start_stop]`, if the
+    /// data of the section determine it instead of `process.arc_end_delay`.
     fn arc_end_time(&self, _weld: &WeldSettings) -> Option<f64> {
         None
     }
 
-    /// The most instructions that a pass may have where no program may be longer; `None` where a pass that is too long
-    /// for the limit makes a longer program.
+    /// Most instructions of a pass, if no program may be longer; `None` if a pass that exceeds the limit makes a longer
+    /// program.
     fn longest_pass(&self, _program: &ProgramSettings) -> Option<usize> {
         None
     }
 
-    /// How the section names what turns the part; `None` where the dialect writes nothing that does.
+    /// How the section names the axes that turn the part; `None` if the dialect writes none.
     fn table(&self) -> Option<Table> {
         None
     }
@@ -105,14 +107,14 @@ pub trait Section {
     /// Removes, for a dry run, whatever would switch the arc, apart from the templates.
     fn dry_run(&mut self) {}
 
-    /// Begins a program.
+    /// Begins writing a program.
     ///
     /// # Errors
     /// [`DialectError`] for a job that asks for more than the dialect can write or the section provides.
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError>;
 }
 
-/// Whether lines that strike the arc wait until it is steady.
+/// Whether the lines that strike the arc wait until it is steady.
 fn stands(arc_on: &[String]) -> bool {
     arc_on.iter().any(|line| line.contains("{{arc_start_delay"))
 }
@@ -122,7 +124,7 @@ fn stands(arc_on: &[String]) -> bool {
 pub struct Table {
     /// Full key.
     pub key: &'static str,
-    /// Whether the profile has it.
+    /// Whether the profile gives it.
     pub known: bool,
     /// What it is: a sentence.
     pub what: &'static str,
@@ -216,7 +218,8 @@ pub fn names() -> Vec<&'static str> {
     ALL.iter().map(|dialect| dialect.name).collect()
 }
 
-/// Whether a file may be the module `name` of a program, whatever its case and the language; both without their folder.
+/// Whether a file may be the module `name` of a program, ignoring case and language; both are given without their
+/// folder.
 ///
 /// ```
 /// use bead_program::dialect;

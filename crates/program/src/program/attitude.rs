@@ -1,4 +1,4 @@
-//! How the torch leans over the part, and how a table or a positioner under it holds the part.
+//! How the torch leans over the part, and how a table or a positioner holds the part under it.
 
 use super::Held;
 use glam::{DQuat, DVec2, DVec3};
@@ -6,12 +6,12 @@ use glam::{DQuat, DVec2, DVec3};
 /// The attitude of torch and part at the end of a move.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Attitude {
-    /// Where the torch leans: the horizontal part of the unit vector from the wire's tip along the torch. 0 is the orientation
-    /// in the robot's section.
+    /// Lean of the torch: the horizontal part of the unit vector from the wire's tip along the torch. 0 is the
+    /// orientation in the robot's section.
     pub lean: DVec2,
-    /// What turns the part's frame into that of the layer at this place, where layers are not level.
+    /// Rotation from the part's frame to that of the layer at this point, if layers are not level.
     pub layer: DQuat,
-    /// How the part is held by what turns it during the program; `None` where nothing does.
+    /// How the axes that turn the part during the program hold it; `None` if there are none.
     pub held: Option<Held>,
 }
 
@@ -21,8 +21,8 @@ impl Attitude {
         *self == Self::default()
     }
 
-    /// What turns the tool's orientation in the part's frame: the part's turn undone, so that the torch stays as it is in the cell,
-    /// then on the shortest way to the layer's normal with the lean.
+    /// Rotation of the tool's orientation in the part's frame: it undoes the part's turn, so that the torch keeps its
+    /// orientation in the cell, then turns by the shortest rotation to the layer's normal with the lean.
     pub fn rotation(&self) -> DQuat {
         let up = self.lean.extend((1.0 - self.lean.length_squared()).max(0.0).sqrt());
         let lean = DQuat::from_rotation_arc(DVec3::Z, up.normalize());
@@ -31,7 +31,7 @@ impl Attitude {
         DQuat::from_rotation_arc(back * DVec3::Z, along) * back
     }
 
-    /// The attitude on the way to another, at the fraction `part` of the way.
+    /// The attitude at the fraction `part` of the way to another.
     ///
     /// ```
     /// use bead_program::program::{Attitude, Held};

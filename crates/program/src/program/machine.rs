@@ -22,7 +22,7 @@ pub struct Machine {
     pub description: String,
     /// From the floor to the part.
     pub axes: Vec<PositionerAxis>,
-    /// What is up in the cell when all axes are at 0.
+    /// The upward direction in the cell, in the part's x, y and z with all axes at 0.
     #[serde(default = "upright")]
     pub up: [f64; 3],
 }
@@ -36,7 +36,7 @@ impl Machine {
         toml::from_str(Self::built_in_text(name)?).map_err(|error| format!("{name}: {error}"))
     }
 
-    /// Its text, to be read or copied.
+    /// Its text, for reading or copying.
     ///
     /// ```
     /// use bead_program::program::Machine;

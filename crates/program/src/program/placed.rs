@@ -1,17 +1,18 @@
-//! Instructions of layers that are not level, taken from their chart to space: straight lines on a layer become as many straight
-//! moves as it takes to follow the layer, and the torch stands along the layer's normal.
+//! Transforms instructions of layers that are not level from their chart to space: straight lines on a layer become as
+//! many straight moves as it takes to follow the layer, and the torch is aligned with the layer's normal.
 
 use super::{Attitude, Instruction, rounded};
 use bead_part::chart::{At, Sheet};
 use bead_plan::weld::Transfer;
 use glam::{DMat3, DQuat, DVec3};
 
-/// Moves with the arc on keep this close to the line on the layer, mm, and turn the torch by no more than this, rad.
+/// For moves with the arc on: greatest distance from the line on the layer, mm, and greatest turn of the torch in a
+/// move, rad.
 const WELDING: (f64, f64) = (0.05, 0.087);
-/// Travels.
+/// The same for travels.
 const TRAVELLING: (f64, f64) = (1.0, 0.175);
 
-/// Takes the instructions of a pass to space; `from` is where the torch comes from, in the chart.
+/// Transforms the instructions of a pass to space; `from` is the torch's previous position in the chart.
 pub(super) fn placed(instructions: Vec<Instruction>, sheet: &Sheet<'_>, from: Option<DVec3>) -> Vec<Instruction> {
     let mut placing =
         Placing { sheet, at: from, start: Attitude::default(), out: Vec::with_capacity(instructions.len()) };
@@ -29,9 +30,9 @@ pub(super) fn transferred(transfer: &Transfer) -> impl Iterator<Item = Instructi
 
 struct Placing<'a> {
     sheet: &'a Sheet<'a>,
-    /// In the chart.
+    /// Position in the chart.
     at: Option<DVec3>,
-    /// Lean and table at the start of the pass.
+    /// Attitude at the start of the pass.
     start: Attitude,
     out: Vec<Instruction>,
 }
@@ -83,7 +84,7 @@ impl Placing<'_> {
         Attitude { layer: frame(&self.sheet.at(at)), ..attitude }
     }
 
-    /// Turns the torch to its attitude at a place.
+    /// Turns the torch to its attitude at a point.
     fn turn(&mut self, p: DVec3) {
         self.out.push(Instruction::Turn { attitude: self.turned(self.start, p) });
     }
@@ -103,7 +104,7 @@ impl Placing<'_> {
         for p in self.sheet.divided(from, to, tolerance, angle) {
             let [start, end] = [before, p].map(|p| self.sheet.at(p));
             let (space, chart) = (start.place.distance(end.place), before.distance(p));
-            // The metal of a piece is that on the middle of its layer; the torch moves on top of it.
+            // A piece's metal is measured at the middle of its layer; the torch moves on top of it.
             let longer = if chart > 0.0 && space > 0.0 { space / chart } else { 1.0 };
             self.out.push(instruction(Piece { to: rounded(end.place), layer: frame(&end), longer, last: p == to }));
             before = p;
@@ -116,7 +117,7 @@ impl Placing<'_> {
 struct Piece {
     to: DVec3,
     layer: DQuat,
-    /// Its length, as a multiple of that in the chart.
+    /// Its length over that in the chart.
     longer: f64,
     last: bool,
 }

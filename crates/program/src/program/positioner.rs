@@ -1,8 +1,9 @@
 //! A positioner that turns the part so that the layer lies level under the torch.
 //!
-//! The angles that bring a layer's normal up are closed forms: the normal turns about the axis next to the part until it is as
-//! far from the other axis as "up" is, and that axis then brings both together (Paden 1986, subproblems 1 and 2). There are
-//! two ways, and whole turns of each axis; a pass begins where it can be followed to its end.
+//! The angles that bring a layer's normal upright have closed forms: the normal turns about the axis next to the part
+//! until its angle to the other axis equals that of "up", and then the other axis aligns the two (Paden 1986,
+//! subproblems 1 and 2). There are two solutions, plus whole turns of each axis; a pass begins where it can be followed
+//! to its end.
 
 use super::machine::Keys;
 use super::turning::{MOST_PER_MM, WOUND, whole_turns};
@@ -11,12 +12,13 @@ use bead_plan::limit::{Broken, Limit, limit};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// Axes that are nearer to each other than this, °, do not turn the part in two ways.
+/// Axes nearer to each other than this, °, do not give two solutions.
 const APART: f64 = 10.0;
-/// A normal this near to an axis is not turned by it, rad.
+/// A normal within this angle of an axis is not turned by it, rad.
 const ON_AXIS: f64 = 1e-6;
-/// Under the arc an axis may also turn this many times as far as the normal does: on small parts that is more than its length allows.
-/// Beyond that, where a normal passes near an axis, the axis would spin to keep the pool level to the last degree.
+/// With the arc on, an axis may also turn this many times as far as the normal does: on small parts that is more than
+/// its length allows. Beyond that, where a normal passes near an axis, the axis would spin to keep the pool level to
+/// the last degree.
 const MOST_PER_TURN: f64 = 2.0;
 
 /// When the positioner turns.
@@ -66,9 +68,9 @@ pub struct Positioner {
 pub struct Held {
     /// Angles of its axes, °; a single axis is the first.
     pub angles: [f64; 2],
-    /// What turns directions of the part into those of the cell, where z is up.
+    /// Rotation from directions of the part to those of the cell, where z is up.
     pub turn: DQuat,
-    /// Where the part's origin lies in the cell, mm; 0 with all axes at 0.
+    /// Position of the part's origin in the cell, mm; 0 with all axes at 0.
     pub shift: DVec3,
 }
 
@@ -78,7 +80,7 @@ impl Held {
         Self { angles: [angle, 0.0], turn: DQuat::from_rotation_z(angle.to_radians()), shift: DVec3::ZERO }
     }
 
-    /// How it is held on the way to another position, at the fraction `part` of the way.
+    /// How the part is held at the fraction `part` of the way to another position.
     pub(super) fn towards(&self, to: &Self, part: f64) -> Self {
         let (turn, shift) = (self.turn.slerp(to.turn, part), self.shift.lerp(to.shift, part));
         Self { angles: between(self.angles, to.angles, part), turn, shift }
@@ -95,7 +97,7 @@ impl Positioner {
     pub fn held(&self, angles: [f64; 2]) -> Held {
         let places = self.axes.iter().map(|axis| DVec3::from(axis.through));
         let axes = self.directions().zip(places).zip(angles);
-        // From the part outwards, each about its line.
+        // From the part outwards, each about its own axis.
         let (turn, shift) =
             axes.rev().fold((DQuat::IDENTITY, DVec3::ZERO), |(turn, shift), ((direction, on), angle)| {
                 let own = DQuat::from_axis_angle(direction, angle.to_radians());
@@ -105,7 +107,7 @@ impl Positioner {
         Held { angles, turn: (standing * turn).normalize(), shift: standing * shift }
     }
 
-    /// What turns the part's directions, with all axes at 0, into those of the cell.
+    /// Rotation from the part's directions, with all axes at 0, to those of the cell.
     fn standing(&self) -> DQuat {
         DQuat::from_rotation_arc(self.upwards(), DVec3::Z)
     }
@@ -118,8 +120,8 @@ impl Positioner {
         self.axes.iter().map(|axis| DVec3::from(axis.direction).normalize_or_zero())
     }
 
-    /// The angles within half a turn at which a normal comes as near to "up" as it can, °, by all ways; an axis that does not
-    /// matter stays as it is in `before`.
+    /// All solutions within half a turn that bring a normal as near to "up" as possible, °; an axis without effect
+    /// keeps its angle in `before`.
     fn ways(&self, normal: DVec3, before: [f64; 2]) -> Vec<[f64; 2]> {
         let (up, directions) = (self.upwards(), self.directions().collect::<Vec<_>>());
         match directions[..] {
@@ -136,7 +138,7 @@ impl Positioner {
         }
     }
 
-    /// The angle of the first axis that is best where the second has this one, °.
+    /// The best angle of the first axis for this angle of the second, °.
     fn first_for(&self, normal: DVec3, angles: [f64; 2]) -> f64 {
         let directions: Vec<DVec3> = self.directions().collect();
         let [first, second] = directions[..] else { return angles[0] };
@@ -144,7 +146,7 @@ impl Positioner {
         turn_onto(turned, self.upwards(), first).map_or(angles[0], |angle| near(angle, angles[0]))
     }
 
-    /// How far a normal leans from up, °.
+    /// Angle between a normal and "up", °.
     pub fn off_level(&self, normal: DVec3, angles: [f64; 2]) -> f64 {
         (self.held(angles).turn * normal).angle_between(DVec3::Z).to_degrees()
     }
@@ -156,7 +158,7 @@ impl Positioner {
         angles
     }
 
-    /// The time that the slower axis takes from some angles to others, s.
+    /// Time that the slower axis takes between two positions, s.
     fn seconds(&self, from: [f64; 2], to: [f64; 2]) -> f64 {
         let each = self.axes.iter().enumerate().map(|(k, axis)| (to[k] - from[k]).abs() / axis.speed);
         each.fold(0.0, f64::max)
@@ -174,7 +176,7 @@ impl Positioner {
         numbers.map(|(key, value, range, unit)| limit(key, value, range, unit, why)).collect()
     }
 
-    /// What does not fit together.
+    /// The first contradiction.
     pub(super) fn broken(&self) -> Option<Broken> {
         let directions: Vec<DVec3> = self.directions().collect();
         let broken = |key: &str, value: String, reason: &str| {
@@ -205,20 +207,21 @@ impl Positioner {
     }
 }
 
-/// The angle by which an axis brings a direction as near to another as it can, °; `None` where one of them lies on the axis.
+/// The angle by which an axis brings a direction as near as possible to another, °; `None` if one of them lies on the
+/// axis.
 fn turn_onto(from: DVec3, to: DVec3, axis: DVec3) -> Option<f64> {
     let (from, to) = (from.reject_from(axis), to.reject_from(axis));
     let apart = from.length().min(to.length()) > ON_AXIS;
     apart.then(|| axis.dot(from.cross(to)).atan2(from.dot(to)).to_degrees())
 }
 
-/// The angles by which the second axis brings a normal to where the first can bring it up, or as near as it can, °; `None` where
-/// it may turn as it likes.
+/// The angles by which the second axis brings a normal to where the first can bring it up, or as near as possible, °;
+/// `None` for an angle without effect.
 fn onto_cone(normal: DVec3, up: DVec3, first: DVec3, second: DVec3) -> Vec<Option<f64>> {
     if normal.reject_from(second).length() <= ON_AXIS {
         return vec![None];
     }
-    // What is as far from the first axis as up, and as far from the second as the normal.
+    // The direction whose angle to the first axis equals that of "up", and to the second that of the normal.
     let (between, across) = (first.dot(second), first.cross(second));
     let (along_first, along_second) = (up.dot(first), normal.dot(second));
     let scale = 1.0 - between * between;
@@ -228,40 +231,40 @@ fn onto_cone(normal: DVec3, up: DVec3, first: DVec3, second: DVec3) -> Vec<Optio
     let targets = if left >= 0.0 {
         [1.0, -1.0].map(|side| in_plane + across * (side * left.sqrt()))
     } else {
-        // Out of reach: as near as the plane of both axes, on the one side or the other.
+        // Out of reach: as near as the plane of both axes allows, on either side.
         let towards = first.reject_from(second);
         [towards, -towards]
     };
     targets.into_iter().map(|target| turn_onto(normal, target, second)).collect()
 }
 
-/// The angle some whole turns away that is nearest to another, °.
+/// The equivalent angle, whole turns away, that is nearest to another, °.
 fn near(angle: f64, to: f64) -> f64 {
     angle + ((to - angle) / 360.0).round() * 360.0
 }
 
-/// A positioner during a program.
+/// The state of a positioner during a program.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Holder {
     positioner: Positioner,
-    /// °
+    /// Angles of the axes, °.
     angles: [f64; 2],
-    /// Where the torch is, mm.
+    /// Position of the torch, mm.
     at: Option<DVec3>,
     /// Speed of travels, mm/s.
     travel_speed: f64,
-    /// How long travels have had to wait for the axes, s.
+    /// Time that travels have waited for the axes, s.
     waited: f64,
 }
 
-/// A place of a pass.
+/// A point of a pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Step {
-    /// Of the layer.
+    /// Normal of the layer.
     normal: DVec3,
     /// Length of the move there, mm.
     length: f64,
-    /// The farthest that an axis turns on the way, °.
+    /// Greatest turn of an axis on the way, °.
     most: f64,
 }
 
@@ -278,12 +281,12 @@ impl Holder {
         positioner.map(|own| Self { positioner: own.clone(), angles: [0.0; 2], at: None, travel_speed, waited: 0.0 })
     }
 
-    /// How long travels have had to wait for the axes so far, s.
+    /// Time that travels have waited for the axes so far, s.
     pub(super) fn waited(&self) -> f64 {
         self.waited
     }
 
-    /// Turns the part as the instructions of a layer need it.
+    /// Adds the turns that the instructions of a layer need.
     pub(super) fn hold(&mut self, instructions: &mut Vec<Instruction>) {
         let starts = |i: &Instruction| matches!(i, Instruction::PassStart { .. });
         let mut rest = std::mem::take(instructions);
@@ -306,7 +309,7 @@ impl Holder {
         };
         self.waited += self.waits(&pass[..first], before, start);
         let way = self.positioner.farthest(before, start);
-        // Wound back by a turn, the torch cannot go around with the part: the joints move.
+        // When it is wound back by a turn, the torch cannot follow the part around: it is a joint move.
         let before = if way > WOUND { start } else { before };
         let first = if way > WOUND { jumped(pass, first) } else { first };
         self.approach(&mut pass[..first], before, start);
@@ -323,7 +326,7 @@ impl Holder {
         self.at = pass.iter().rev().find_map(Instruction::target).or(self.at);
     }
 
-    /// The places of a pass, its start first.
+    /// The points of a pass, beginning with its start.
     fn steps(&self, pass: &[Instruction], first: usize) -> Vec<Step> {
         let normal = |attitude: Attitude| attitude.layer * DVec3::Z;
         let begins = pass[..first].iter().rev().find_map(Instruction::attitude).unwrap_or_default();
@@ -339,7 +342,7 @@ impl Holder {
         steps
     }
 
-    /// The lengths of the moves of a way, mm; 0 for what is no move.
+    /// Lengths of the moves of a path, mm; 0 for instructions that do not move.
     fn lengths(&self, way: &[Instruction]) -> Vec<f64> {
         let mut at = self.at;
         let mut length = |instruction: &Instruction| {
@@ -349,13 +352,13 @@ impl Holder {
         way.iter().map(|instruction| length(instruction).unwrap_or(0.0)).collect()
     }
 
-    /// How much longer the axes need for a way than the torch, s; nothing for the first, which may come from anywhere.
+    /// Time by which the axes take longer than the torch for a path, s; 0 for the first, which may come from anywhere.
     fn waits(&self, way: &[Instruction], from: [f64; 2], to: [f64; 2]) -> f64 {
         let travel = self.lengths(way).iter().sum::<f64>() / self.travel_speed;
         self.at.map_or(0.0, |_| (self.positioner.seconds(from, to) - travel).max(0.0))
     }
 
-    /// On the way to a pass the part turns as far as the torch has gone.
+    /// On the way to a pass the part turns in proportion to the torch's progress.
     fn approach(&self, way: &mut [Instruction], from: [f64; 2], to: [f64; 2]) {
         let lengths = self.lengths(way);
         let all: f64 = lengths.iter().sum();
@@ -363,14 +366,15 @@ impl Holder {
         for k in 0..way.len() {
             let starts = matches!(way[k], Instruction::PassStart { .. });
             let Some(attitude) = way[k].attitude_mut() else { continue };
-            // A turn holds from the end of the next move on.
+            // A turn applies to the end of the next move.
             let next = lengths[k..].iter().position(|length| *length > 0.0).map_or(lengths.len(), |at| k + at + 1);
             let part = if starts || joints || all <= 0.0 { 1.0 } else { lengths[..next].iter().sum::<f64>() / all };
             attitude.held = Some(self.positioner.held(between(from, to, part)));
         }
     }
 
-    /// The angles at which a pass is followed to its end with the least lean, within the limits, and near to those before.
+    /// The start angles with which a pass is followed to its end with the least lean, within the limits, near the
+    /// previous angles.
     fn begun(&self, steps: &[Step]) -> [f64; 2] {
         let ways = self.positioner.ways(steps[0].normal, self.angles);
         let started = ways.into_iter().map(|start| {
@@ -398,7 +402,7 @@ impl Holder {
         self.positioner.within(best)
     }
 
-    /// The one position for a pass: as it is where that does, or else the one in which the worst place leans least.
+    /// The single position for a pass: the current one if it suffices, otherwise the one whose worst lean is least.
     fn indexed(&self, steps: &[Step]) -> [f64; 2] {
         let lean = |angles: [f64; 2]| {
             steps.iter().map(|step| self.positioner.off_level(step.normal, angles)).fold(0.0, f64::max)
@@ -420,7 +424,7 @@ impl Holder {
         if lean(self.angles) <= lean(best) + WORTH_TURNING { self.angles } else { best }
     }
 
-    /// The angles at the next place of a pass.
+    /// The angles at the next point of a pass.
     fn followed(&self, before: [f64; 2], Step { normal, most, .. }: Step) -> [f64; 2] {
         let ways = self.positioner.ways(normal, before).into_iter();
         let ways = ways.map(|way| [near(way[0], before[0]), near(way[1], before[1])]);
@@ -433,16 +437,17 @@ impl Holder {
     }
 }
 
-/// Leans that differ by less are alike, °.
+/// Leans that differ by less than this are equal, °.
 const SAME: f64 = 0.1;
-/// An indexed part is turned for a pass that leans by so much more than it need, °.
+/// An indexed part is turned for a pass if that reduces its lean by more than this, °.
 const WORTH_TURNING: f64 = 1.0;
 
 fn between(from: [f64; 2], to: [f64; 2], part: f64) -> [f64; 2] {
     std::array::from_fn(|k| from[k] + (to[k] - from[k]) * part)
 }
 
-/// Leaves out the way to a pass but for its last place, to which the joints move; the new index of the first weld.
+/// Removes the path to a pass except for its last point, to which a joint move leads; returns the new index of the
+/// first weld.
 fn jumped(pass: &mut Vec<Instruction>, first: usize) -> usize {
     let above = pass[..first].iter().position(|i| matches!(i, Instruction::Above)).unwrap_or(first);
     let Some(last) = pass[..above].iter().rposition(|i| matches!(i, Instruction::Travel { .. })) else { return first };

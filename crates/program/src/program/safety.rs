@@ -35,7 +35,7 @@ impl Safety {
         }
     }
 
-    /// The first sentence that a comment in a program cannot hold.
+    /// The first sentence that cannot be written in a program's comment.
     pub fn broken(&self) -> Option<Broken> {
         let legal = |text: &&String| text.bytes().all(|b| b.is_ascii_graphic() || b == b' ');
         let odd = self.supplies.iter().find(|text| !legal(text))?;

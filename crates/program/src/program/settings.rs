@@ -110,12 +110,12 @@ impl ProgramSettings {
         self.positioner.as_ref().map_or(table, Positioner::count)
     }
 
-    /// The angles of the axes that turn the part before they first turn, °; `None` where there are none.
+    /// The initial angles of the axes that turn the part, °; `None` if there are none.
     pub fn first_angles(&self) -> Option<[f64; 2]> {
         self.has_table().then(|| [self.table_angle.unwrap_or(0.0), 0.0])
     }
 
-    /// Whether the torch leans differently from what the robot's section says.
+    /// Whether the torch leans away from the orientation in the robot's section.
     pub fn tilts(&self) -> bool {
         self.follow_wall != 0.0 || self.travel_angle != 0.0
     }
@@ -143,7 +143,7 @@ impl ProgramSettings {
         limits
     }
 
-    /// Values that do not fit together.
+    /// The first contradiction between values.
     pub fn broken(&self) -> Option<Broken> {
         if let (Some(_), Some(side)) = (self.table_angle, self.table_side) {
             let reason =
@@ -181,7 +181,7 @@ impl ProgramSettings {
         Some(self.broken_tolerance(reason))
     }
 
-    /// The chord tolerance as an impossible value.
+    /// The chord tolerance reported as an impossible value.
     pub fn broken_tolerance(&self, reason: &str) -> Broken {
         let (key, value) = ("program.chord_tolerance".to_owned(), format!("{}", self.chord_tolerance));
         Broken { key, value, reason: reason.to_owned() }

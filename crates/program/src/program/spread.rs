@@ -1,4 +1,4 @@
-//! Points that follow each other faster than a controller reads them are merged.
+//! Merges points that follow each other faster than a controller can read them.
 //!
 //! A controller interpolates every few milliseconds (KRC4: 12) and looks a few points ahead. Where points come faster,
 //! it slows down and the bead thickens. After each point, the next one kept is the first that the torch reaches once
@@ -12,11 +12,11 @@ use glam::DVec3;
 pub(super) struct Spread {
     /// Least time between two points, s.
     pub(super) time: f64,
-    /// How far points that are left out may lie from the path, mm.
+    /// Greatest distance of dropped points from the path, mm.
     pub(super) tolerance: f64,
 }
 
-/// Leaves out points of a path (positions, each with the speed of the move to it). A merged move takes as long as its
+/// Drops points of a path (positions, each with the speed of the move to it). A merged move takes as long as its
 /// pieces, and so lays the same metal.
 pub(super) fn spread(moves: &mut Vec<(DVec3, f64)>, spread: Spread) {
     let mut kept = vec![0];
@@ -57,7 +57,7 @@ fn within(moves: &[(DVec3, f64)], from: usize, to: usize, tolerance: f64) -> boo
         let part = (p - a).dot(along) / along.length_squared().max(1e-12);
         p.distance(a + along * part.clamp(0.0, 1.0)) <= tolerance
     };
-    // A hairpin smaller than the tolerance would become a move of no length.
+    // A hairpin smaller than the tolerance would become a move of zero length.
     along.length() >= super::MIN_MOVE_MM && moves[from + 1..to].iter().all(|(p, _)| near(*p))
 }
 

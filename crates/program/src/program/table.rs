@@ -4,15 +4,15 @@ use super::ProgramSettings;
 use super::turning::{MOST_PER_MM, WOUND, whole_turns};
 use glam::DVec3;
 
-/// Closer to the axis than this there is no side to turn to, mm.
+/// Within this distance of the axis there is no side to turn to, mm.
 const AXIS_MM: f64 = 1.0;
 
-/// Follows the torch with the table.
+/// Makes the table follow the torch.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Follower {
     /// Direction from the axis in which the arc must stay, °.
     side: f64,
-    /// The angles between which the table turns, °; endless where none are given.
+    /// Least and greatest angle of the table, °; `None` if it turns endlessly.
     range: Option<[f64; 2]>,
     /// Angle of the table, °.
     angle: f64,
@@ -21,20 +21,20 @@ pub(super) struct Follower {
 /// Angle of the table at the start of a pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Turned {
-    /// °
+    /// Angle, °.
     pub(super) angle: f64,
-    /// Whether it comes from so far away that the joints must move.
+    /// Whether it comes from so far away that a joint move is needed.
     pub(super) far: bool,
 }
 
 impl Follower {
-    /// A table as in the profile; `None` where it does not turn.
+    /// A table as in the profile; `None` if it does not turn.
     pub(super) fn new(program: &ProgramSettings) -> Option<Self> {
         program.table_side.map(|side| Self { side, range: program.table_range, angle: 0.0 })
     }
 
-    /// Turns to the start of a pass along these points, by the shorter way; within its range so that it can follow all of the
-    /// pass, if it can.
+    /// Turns to the start of a pass along these points, by the shorter way; if possible, within its range so that it
+    /// can follow the whole pass.
     pub(super) fn begin(&mut self, path: &[DVec3]) -> Turned {
         let Some(&start) = path.first() else { return Turned { angle: self.angle, far: false } };
         let before = self.angle;
@@ -48,8 +48,8 @@ impl Follower {
         Turned { angle: self.angle, far: (self.angle - before).abs() > WOUND }
     }
 
-    /// Turns on with a move of `length` (mm) under the arc. At the end of its range the table stops, and the torch continues
-    /// around it.
+    /// Turns on with a move of `length` (mm) with the arc on. At the end of its range the table stops, and the torch
+    /// continues around it.
     pub(super) fn follow(&mut self, to: DVec3, length: f64) -> f64 {
         let most = MOST_PER_MM * length;
         self.angle += self.missing(to).clamp(-most, most);
@@ -59,7 +59,7 @@ impl Follower {
         self.angle
     }
 
-    /// The least and the greatest angle along a path from its start on, °.
+    /// Least and greatest angle along a path from its start, °.
     fn reached(mut self, path: &[DVec3]) -> (f64, f64) {
         let first = (self.angle, self.angle);
         path.windows(2).fold(first, |(least, most), piece| {
@@ -68,7 +68,7 @@ impl Follower {
         })
     }
 
-    /// The turn that brings a place to the side, -180 to 180°.
+    /// The turn that brings a point to the side, -180 to 180°.
     fn missing(&self, at: DVec3) -> f64 {
         if at.truncate().length() < AXIS_MM {
             return 0.0;

@@ -14,20 +14,20 @@ use rstar::primitives::Line;
 const REACH: f64 = 1.5;
 /// Outlines farther apart than this many layer heights are a step, not a wall (about 63°).
 const STEP: f64 = 2.0;
-/// The torch never leans farther than this from upright: the sine of 45°.
+/// Greatest lean of the torch from upright: sine of 45°.
 const MOST: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Leans are multiples of this (0.03°), so that a wall's small faults do not move the torch.
 const GRID: f64 = 0.0005;
-/// Leans that differ by no more than this (2°) may be in one fitted piece.
+/// Leans that differ by at most this (2°) may be in one fitted piece.
 pub(super) const ALIKE: f64 = 0.035;
 
 type Outlines = RTree<Line<[f64; 2]>>;
 
-/// Leans the torch layer by layer.
+/// Computes the torch's lean, layer by layer.
 #[derive(Debug, Clone)]
 pub struct Tilt {
     follow_wall: f64,
-    /// rad
+    /// Greatest work angle, rad.
     max_work_angle: f64,
     /// Sine of the travel angle.
     back: f64,
@@ -37,7 +37,7 @@ pub struct Tilt {
 }
 
 impl Tilt {
-    /// A torch that leans as in the profile; `None` where it stays upright.
+    /// As in the profile; `None` if the torch stays upright.
     pub fn new(program: &ProgramSettings) -> Option<Self> {
         let (max_work_angle, back) = (program.max_work_angle.to_radians(), program.travel_angle.to_radians().sin());
         let (here, below) = (Outlines::new(), Outlines::new());
@@ -45,12 +45,12 @@ impl Tilt {
         program.tilts().then_some(tilt)
     }
 
-    /// Goes on to the next layer.
+    /// Moves on to the next layer.
     pub fn enter(&mut self, layer: &Layer) {
         let line = |(a, b): (DVec2, DVec2)| Line::new(a.to_array(), b.to_array());
         let rings = layer.islands.iter().flat_map(Polygon::rings);
         let mut edges: Vec<_> = rings.flat_map(|ring| ring.edges()).map(line).collect();
-        // Walls given as curves have no outline but their own.
+        // Walls given as curves have no outline but their own paths.
         if edges.is_empty() {
             let pieces = layer.passes.iter().flat_map(|pass| pass.segments());
             edges.extend(pieces.map(|s| line((s.from.truncate(), s.to.truncate()))));
@@ -82,7 +82,7 @@ impl Tilt {
         smoothed(&points, &leans, width).into_iter().map(even).collect()
     }
 
-    /// The lean of the wall at a place.
+    /// The lean of the wall at a point.
     fn wall(&self, at: DVec2, width: f64) -> DVec2 {
         let beside = || {
             let top = nearest(&self.here, at)?;
@@ -96,21 +96,21 @@ impl Tilt {
     }
 }
 
-/// The nearest place on an outline.
+/// The nearest point on an outline.
 fn nearest(outlines: &Outlines, to: DVec2) -> Option<DVec2> {
     let line = outlines.nearest_neighbor(&to.to_array())?;
     Some(DVec2::from_array(line.nearest_point(&to.to_array())))
 }
 
-/// The direction of a path at a point; halfway between both at a corner.
+/// The direction of a path at a point; the bisecting direction at a corner.
 fn way(points: &[DVec2], i: usize) -> DVec2 {
     let towards = |from: usize, to: usize| (points[to] - points[from]).normalize_or_zero();
     let (before, after) = (towards(i.saturating_sub(1), i), towards(i, (i + 1).min(points.len() - 1)));
     (before + after).normalize_or_zero()
 }
 
-/// The mean of the values along the path from a `width` (mm) before each point to a `width` after it; near an end, as far
-/// to both sides as the path goes.
+/// The mean of the values along the path from `width` (mm) before each point to `width` after it; near an end, the
+/// interval is shortened on both sides.
 fn smoothed(points: &[DVec2], values: &[DVec2], width: f64) -> Vec<DVec2> {
     // The integral of the values up to each point, over the distance (mm).
     let mut sums = vec![(0.0, DVec2::ZERO); points.len().min(1)];

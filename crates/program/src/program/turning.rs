@@ -1,13 +1,14 @@
-//! What axes that turn the part have in common, be it a table that keeps the arc on its side or a positioner that keeps it level.
+//! Common to axes that turn the part: a table that keeps the arc on its side, or a positioner that keeps the layer
+//! level.
 
-/// Under the arc an axis turns no faster than this, ° for each mm of the path: places near its axis would spin it.
+/// Greatest turn of an axis with the arc on, ° per mm of path: near its axis it would spin.
 pub(super) const MOST_PER_MM: f64 = 2.0;
 
-/// Between passes an axis that turns farther than this, °, turns while the joints move: the torch would have to move around with it
-/// in a straight move, whose target lies in the part's frame.
+/// Between passes an axis that turns by more than this, °, turns during a joint move: in a straight move the torch
+/// would have to move around with it, since the target is in the part's frame.
 pub(super) const WOUND: f64 = 180.0;
 
-/// Whole turns that are tried to each side.
+/// Whole turns tried to each side.
 const TURNS: i32 = 100;
 
 /// By which whole turns, °, the angles of a pass from the least to the greatest come within limits, or as near as they can; of those

@@ -1,13 +1,13 @@
-//! The turns of a helix joined: a program needs them as one pass, since no program may end while the arc burns.
+//! Joins the turns of a helix: a program needs them as one pass, since no program may end with the arc on.
 
 use bead_plan::layer::{Layer, Lit};
 use bead_plan::pass::Along;
 use std::borrow::Cow;
 
-/// Takes layers, and gives those that a program writes.
+/// Takes layers, and returns those to be written.
 #[derive(Debug, Clone, Default)]
 pub struct Turns {
-    /// The turns so far, as a layer that ends where the last one does, and the index of that.
+    /// The turns so far, as one layer that ends where the last one does, and the index of that layer.
     so_far: Option<Layer>,
     last: usize,
 }
@@ -17,7 +17,7 @@ impl Turns {
     pub fn take<'a>(&mut self, layer: &'a Layer) -> Vec<Cow<'a, Layer>> {
         let follows = self.so_far.is_some() && layer.lit.before && layer.index == self.last + 1;
         self.last = layer.index;
-        // A helix that is not continued, since its next turn is not to be welded, ends where it is.
+        // A helix whose next turn is not welded ends here.
         let mut ready: Vec<Cow<'a, Layer>> =
             if follows { Vec::new() } else { self.end().map(Cow::Owned).into_iter().collect() };
         if layer.lit == Lit::default() {
@@ -34,7 +34,7 @@ impl Turns {
         ready
     }
 
-    /// The turns of a helix that did not reach its end.
+    /// The turns of a helix that was not completed.
     pub fn end(&mut self) -> Option<Layer> {
         self.so_far.take()
     }

@@ -1,4 +1,4 @@
-//! The section `[weave]` of a profile, and its swings as moves, for controllers that do not weave by themselves.
+//! The section `[weave]` of a profile, and weaving as moves, for controllers that do not weave by themselves.
 
 use super::{MIN_MOVE_MM, rounded};
 use bead_plan::limit::{Limit, limits};
@@ -46,12 +46,12 @@ pub(super) struct Swing {
     pub(super) to: DVec3,
     /// Index of the move of the path along which it swings.
     pub(super) of: usize,
-    /// mm/s
+    /// Speed, mm/s.
     pub(super) speed: f64,
 }
 
-/// A path along which the torch swings in even half waves from its start to its end, both on the path, and takes as long as the
-/// path does: `speeds` (mm/s) hold up to the points of the path.
+/// A path along which the torch swings in half waves of equal length from its start to its end, both on the path, in
+/// the same time as the path: `speeds` (mm/s) apply up to the points of the path.
 pub(super) fn swings(path: &[DVec3], speeds: &[f64], weave: &Weave) -> Vec<Swing> {
     // Distance and time up to each point.
     let mut along = vec![(0.0, 0.0)];
@@ -65,7 +65,7 @@ pub(super) fn swings(path: &[DVec3], speeds: &[f64], weave: &Weave) -> Vec<Swing
     let part = |way: f64, i: usize| (way - along[i - 1].0) / (along[i].0 - along[i - 1].0).max(1e-12);
     let place = |way: f64| path[of(way) - 1].lerp(path[of(way)], part(way, of(way)).clamp(0.0, 1.0));
     let time = |way: f64| along[of(way) - 1].1 + part(way, of(way)) * (along[of(way)].1 - along[of(way) - 1].1);
-    // Sideways from the direction of the path around a place, so that corners of the path are rounded.
+    // Sideways from the path's direction near a point, so that corners of the path are rounded.
     let side = |way: f64| {
         let about = weave.amplitude.min(end / 4.0);
         let ahead = place((way + about).min(end)) - place((way - about).max(0.0));
@@ -92,7 +92,7 @@ pub(super) fn swings(path: &[DVec3], speeds: &[f64], weave: &Weave) -> Vec<Swing
     out
 }
 
-/// The greatest fraction of a half wave that the torch dwells at a side.
+/// Greatest fraction of a half wave during which the torch dwells at a side.
 const MOST_STAY: f64 = 0.8;
 
 #[cfg(test)]

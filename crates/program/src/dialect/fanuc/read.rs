@@ -1,4 +1,4 @@
-//! FANUC TP as ASCII (`.ls`): J, L and C motions to the positions of the listing, and the programs that it calls.
+//! Reads FANUC TP as ASCII (`.ls`): J, L and C motions to the positions of the listing, and the programs that it calls.
 //!
 //! Positions are in the user frame. The arc is switched by `Weld Start`, `Arc Start` and the instructions that end
 //! them, on lines of their own or after a motion, or by the codes in the options.
@@ -47,10 +47,10 @@ const MAX_NAME: usize = 36;
 /// Branches and loops.
 const CONTROL: [&str; 5] = ["IF", "ELSE", "SELECT", "JMP", "WHILE"];
 
-/// Where a position lies.
+/// The position of a motion.
 #[derive(Clone, Copy)]
 enum Position {
-    /// User frame, place, mm, and what else it states.
+    /// User frame, point, mm, and what else the position states.
     Place(u32, DVec3, Stated),
     /// Joint angles, or not taught.
     Unknown,
@@ -104,7 +104,7 @@ struct Reader<'a> {
     unshifted: bool,
     /// How the last move blends into the next, if it does not end exactly.
     blended: Option<String>,
-    /// Frequency at which the torch weaves, Hz; 0 where a schedule gives it.
+    /// Weaving frequency, Hz; 0 where a schedule defines it.
     weave: Option<f64>,
     /// Pitch of the weave in this pass, mm.
     pitch: Option<f64>,
@@ -181,8 +181,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// How many statements `IF R[1]>5,JMP LBL[3]` jumps ahead, 0 where it does not jump; `None` for anything else, conditions
-    /// of which nothing is known, and labels that do not come after it.
+    /// The number of statements that `IF R[1]>5,JMP LBL[3]` jumps ahead, 0 if it does not jump; `None` for anything
+    /// else, for conditions that cannot be evaluated, and for labels that do not come after it.
     fn jump(&self, text: &str, behind: &[(usize, String)]) -> Option<usize> {
         let flat = compact(text);
         let (taken, label) = match flat.strip_prefix("JMP") {
@@ -228,7 +228,7 @@ impl Reader<'_> {
                 return self.call(called, line, depth);
             }
         } else if let Some((_, value)) = flat.split_once(",3]=").filter(|_| flat.starts_with("PR[")) {
-            // The height that is added to a layer; ours is 0 until somebody sets it.
+            // The height added to a layer; ours is 0 until somebody sets it.
             self.unshifted = number(value) == Some(0.0);
         } else if flat.starts_with("OFFSETCONDITION") {
         } else if let Some((register, value)) = flat.split_once('=').filter(|_| flat.starts_with("R[")) {
@@ -273,7 +273,7 @@ impl Reader<'_> {
         };
     }
 
-    /// The distance along the pass over which the torch swings once follows from speed and frequency.
+    /// The pitch of a weave, mm, follows from speed and frequency.
     fn pitch(&mut self, speed: f64, line: usize) {
         let Some(hertz) = self.weave.filter(|hertz| *hertz > 0.0 && speed > 0.0 && self.trace.arc) else { return };
         let pitch = speed / hertz;
@@ -394,7 +394,7 @@ fn position(text: &str) -> (Option<u32>, &str) {
     (number, rest.trim_start())
 }
 
-/// mm/s of `8.0mm/sec`, `48.0cm/min` or `20.0inch/min`.
+/// Speed in mm/s from `8.0mm/sec`, `48.0cm/min` or `20.0inch/min`.
 fn mm_per_second(text: &str) -> Option<f64> {
     let units = [("mm/sec", 1.0), ("cm/min", 10.0 / 60.0), ("inch/min", 25.4 / 60.0)];
     units.iter().find_map(|(unit, factor)| number(text.strip_suffix(unit)?).map(|v| v * factor))
@@ -407,7 +407,7 @@ struct Block {
     groups: usize,
     frame: u32,
     place: [Option<f64>; 3],
-    /// W, P, R, °.
+    /// W, P and R, °.
     turns: [Option<f64>; 3],
 }
 

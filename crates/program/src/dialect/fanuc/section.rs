@@ -67,14 +67,15 @@ pub struct Fanuc {
     pub crater: Vec<String>,
     /// Instructions at the end of the main program.
     pub end: Vec<String>,
-    /// Register that holds where to begin, for `program.restart`; default 90.
+    /// Register that holds the pass at which to begin, for `program.restart`; default 90.
     #[serde(default = "ninety")]
     pub restart_register: u32,
     /// Position register that holds the height to be added to a layer, for `program.layer_offsets`; default 90.
     #[serde(default = "ninety")]
     pub offset_register: u32,
-    /// Motion group of what turns the part, 2 to 5: the leader of the pair that is coordinated on the controller. The user frame
-    /// is then that of the pair. Needed for `program.positioner`, `program.table_angle` and `program.table_side`.
+    /// Motion group of the table or positioner that turns the part, 2 to 5: the leader of the pair that the controller
+    /// coordinates. The user frame is then that of the pair. Needed for `program.positioner`, `program.table_angle` and
+    /// `program.table_side`.
     #[serde(default)]
     pub table_group: Option<u32>,
     /// Lines at other places of the program; default none.
@@ -82,7 +83,7 @@ pub struct Fanuc {
     pub hooks: Hooks,
 }
 
-/// How the controller knows what turns the part.
+/// How the controller identifies what turns the part.
 const TABLE: &str = "It is the motion group of the table or positioner, such as 2: the leader of the coordinated pair, whose frame the \
                      user frame is.";
 
@@ -142,7 +143,7 @@ impl Section for Fanuc {
 
     fn dry_run(&mut self) {
         self.hooks.without_arc();
-        // The weld schedule gives no speed while nothing is welded.
+        // The weld schedule gives no speed while the arc is off.
         if self.speed == FanucSpeed::WeldSpeed {
             self.speed = FanucSpeed::MillimetresPerSecond;
         }

@@ -1,4 +1,4 @@
-//! FANUC TP as ASCII (R-30iB, ArcTool): `NAME.ls` calls `NAME_L001.ls` and so on; a long layer continues in
+//! Writes FANUC TP as ASCII (R-30iB, ArcTool): `NAME.ls` calls `NAME_L001.ls` and so on; a long layer continues in
 //! `NAME_L001_2.ls`.
 //!
 //! Every move has its own position, in the frames of the profile. The arc is switched on separate lines after FINE;
@@ -14,13 +14,13 @@ use bead_plan::pass::PassKind;
 use glam::DVec3;
 use std::fmt::Write as _;
 
-/// Program names may have this many characters.
+/// Most characters of a program name.
 const MAX_NAME: usize = 36;
 
-/// Comments may have this many characters.
+/// Most characters of a program's comment.
 const MAX_COMMENT: usize = 16;
 
-/// Remarks may have this many characters.
+/// Most characters of a remark.
 const MAX_REMARK: usize = 32;
 
 /// Longest wait of one line, s.
@@ -33,12 +33,12 @@ pub(super) struct FanucTp {
     weave: Option<Weave>,
     /// W, P, R of the torch, °.
     orientation: [f64; 3],
-    /// Angles of what turns the part, °, as many as it has axes.
+    /// Angles of the axes that turn the part, °; unused ones are ignored.
     turned: Option<[f64; 2]>,
     main: Program,
     /// Labels where open branches end.
     open: Vec<usize>,
-    /// How the torch swings at the moment, as it is written.
+    /// The weave in effect, as it is written.
     weaving: Option<String>,
 }
 
@@ -65,7 +65,7 @@ impl Program {
         self.labels
     }
 
-    /// `turning` is the line of what turns the part, if anything does.
+    /// Adds a position and returns its number; `turning` is the line for the axes that turn the part, if any.
     fn position(&mut self, head: &str, axes: [(&str, String); 6], turning: &str) -> usize {
         self.points += 1;
         let _ = write!(self.positions, "P[{}]{{\r\n   GP1:\r\n    {head}\r\n", self.points);
@@ -77,7 +77,7 @@ impl Program {
         self.points
     }
 
-    /// `groups` are the motion groups of its points.
+    /// The program as a file; `groups` are the motion groups of its points.
     fn text(&self, name: &str, comment: &str, groups: &str) -> String {
         let comment = &comment[..comment.len().min(MAX_COMMENT)];
         format!(
@@ -98,7 +98,7 @@ impl FanucTp {
         Self { frame, fanuc, weave, orientation, turned, main, open: Vec::new(), weaving: None }
     }
 
-    /// The motion group that turns the part, where one does.
+    /// The motion group that turns the part, if any.
     fn table(&self) -> Option<u32> {
         self.fanuc.table_group.filter(|_| self.frame.program.has_table())
     }
@@ -109,7 +109,7 @@ impl FanucTp {
         (1..=5).map(moved).collect::<Vec<_>>().join(",")
     }
 
-    /// What of a position turns the part.
+    /// The line of a position for the axes that turn the part.
     fn turning(&self, angles: Option<[f64; 2]>) -> String {
         let Some((group, angles)) = self.table().zip(angles) else { return String::new() };
         let axes = angles.iter().take(self.frame.program.turning_axes()).zip(1..);
@@ -118,12 +118,12 @@ impl FanucTp {
         format!("   GP{group}:\r\n    UF : {user_frame}, UT : {tool_frame},\r\n    {}\r\n", axes.join(", "))
     }
 
-    /// What follows a motion along a line: that both groups move as one.
+    /// The option of a linear motion by which both groups move in coordination.
     fn together(&self) -> &'static str {
         if self.table().is_some() { " COORD" } else { "" }
     }
 
-    /// Swings the torch so that a period has the same length at any speed (mm/s).
+    /// Weaves with a pitch that is the same at any speed (mm/s).
     fn weave_at(&mut self, program: &mut Program, speed: f64) {
         let Some(weave) = &self.weave else { return };
         let [hertz, amplitude] = [speed / weave.length, weave.amplitude].map(|v| fixed(v, 1));
@@ -136,7 +136,7 @@ impl FanucTp {
         }
     }
 
-    /// The height to be added to a layer, which is set in its program.
+    /// The height added to a layer, set in its program.
     fn offset(&self, program: &mut Program) {
         if self.frame.program.layer_offsets {
             let register = self.fanuc.offset_register;
@@ -147,7 +147,7 @@ impl FanucTp {
         }
     }
 
-    /// What ends a motion where its layer has a height to be added.
+    /// The option of a motion whose layer has an added height.
     fn offset_word(&self) -> &'static str {
         if self.frame.program.layer_offsets { " Offset" } else { "" }
     }
@@ -204,7 +204,7 @@ impl Syntax for FanucTp {
         self.fanuc.max_points
     }
 
-    /// The main program is written at its end, when the number of its lines is known.
+    /// The main program is written at its end, when its number of lines is known.
     fn begin_main(&mut self) -> Vec<Chunk> {
         let mut main = Program::default();
         self.frame.supplies.iter().for_each(|line| main.line(&format!("  !{line}")));

@@ -2,7 +2,7 @@
 
 use crate::dialect::reading::words::Patterns;
 
-/// Maximum number of codes of one letter in a block; further ones are dropped, as no control accepts more.
+/// Most codes of one letter in a block; further ones are dropped, as no control accepts more.
 const MAX_CODES: usize = 12;
 
 /// G or M codes in tenths: G92.1 is 921.
@@ -115,7 +115,7 @@ impl Block {
     /// malformed.
     fn word(&mut self, letter: u8, line: &[u8], i: &mut usize) -> Option<bool> {
         let mut start = *i + line[*i..].iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
-        // Siemens writes `A=30` where a name could go on.
+        // Siemens writes `A=30`, where a name could continue.
         start += usize::from(line.get(start) == Some(&b'='));
         let digits = line[start..].iter().take_while(|b| matches!(b, b'0'..=b'9' | b'.' | b'+' | b'-')).count();
         if digits == 0 {
@@ -169,7 +169,7 @@ pub(super) fn begins_block(line: &[u8]) -> bool {
         if next.is_ascii_digit() || b"+-.".contains(next))
 }
 
-/// A code that switches the arc.
+/// A code that strikes or ends the arc.
 pub(super) enum Code {
     /// All of these words in one block.
     Words(Vec<(u8, f64)>),

@@ -1,5 +1,5 @@
-//! Branches as far as their conditions are known: O words of LinuxCNC, and forward jumps of Fanuc (`IF[#100GT0]GOTO1`), Siemens
-//! (`IF R90>0 GOTOF LB1`) and TwinCAT NC I (`@126 R90 K0 K1`).
+//! Evaluates branches whose conditions are known: O words of LinuxCNC, and forward jumps of Fanuc (`IF[#100GT0]GOTO1`),
+//! Siemens (`IF R90>0 GOTOF LB1`) and TwinCAT NC I (`@126 R90 K0 K1`).
 
 use crate::dialect::reading::loops::holds;
 use crate::dialect::reading::words::{compact, number};
@@ -8,21 +8,21 @@ use std::collections::{HashMap, HashSet};
 /// The comparisons of LinuxCNC, and how others write them.
 const SIGNS: [(&str, &str); 6] = [("LE", "<="), ("LT", "<"), ("GE", ">="), ("GT", ">"), ("EQ", "=="), ("NE", "!=")];
 
-/// What M66 found: the input came in time.
+/// The result of M66 if the input came in time.
 const INPUT: (&str, f64) = ("#5399", 1.0);
 
-/// What a line is.
+/// How a line is to be treated.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Seen {
     /// A line to be read.
     Block,
     /// Nothing more to do.
     Done,
-    /// A branch or a loop of which nothing is known: its lines are read once.
+    /// A branch or a loop that cannot be evaluated: its lines are read once.
     Unknown,
 }
 
-/// Parameters, and branches that are open.
+/// Parameters, and open branches.
 #[derive(Default)]
 pub(super) struct Branches {
     values: HashMap<String, f64>,
@@ -30,11 +30,11 @@ pub(super) struct Branches {
     taken: HashSet<String>,
     /// The O word up to which lines are skipped.
     skipping: Option<String>,
-    /// The block to which a jump goes: its number (`N1`) or its label (`LB1:`).
+    /// The block that a jump leads to: its number (`N1`) or its label (`LB1:`).
     target: Option<String>,
 }
 
-/// A line without its N number, where it sets a parameter or begins with a word of Siemens that no block has.
+/// A line without its N number, if it sets a parameter or begins with a Siemens keyword that no block has.
 pub(super) fn without_number(line: &[u8]) -> &[u8] {
     let Some(rest) = line.strip_prefix(b"N").or_else(|| line.strip_prefix(b"n")) else { return line };
     let digits = rest.iter().take_while(|b| b.is_ascii_digit()).count();
@@ -60,13 +60,14 @@ fn is_parameter(text: &str) -> bool {
     text.starts_with('#') || text.trim().strip_prefix(['R', 'r']).is_some_and(number)
 }
 
-/// The condition with the signs that others write.
+/// The condition with the comparison signs of the other controls.
 fn signs(condition: &str) -> String {
     let word = SIGNS.iter().find(|(word, _)| condition.contains(word));
     word.map_or_else(|| condition.to_owned(), |(word, sign)| condition.replacen(word, sign, 1))
 }
 
-/// Condition and target of `@126 R90 K0 K1` without blanks and `@`: greater than; `@100 K1` has none.
+/// Condition and target of `@126 R90 K0 K1`, given without blanks and `@`: jumps if greater; `@100 K1` has no
+/// condition.
 fn at_jump(text: &str) -> Option<(Option<String>, String)> {
     let (code, rest) = text.split_at_checked(3)?;
     if code == "100" {
@@ -120,7 +121,7 @@ impl Branches {
         }
     }
 
-    /// A jump, a label, or none of them.
+    /// Evaluates a jump or a label; `None` if the line is neither.
     fn jump(&mut self, text: &str) -> Option<Seen> {
         if text.ends_with(':') {
             return Some(Seen::Done);
@@ -136,7 +137,7 @@ impl Branches {
             };
             (condition.strip_prefix("IF").map(|c| signs(c.trim_matches(['[', ']']))), target)
         };
-        // Without a condition it always jumps.
+        // Without a condition the jump is always taken.
         let taken = condition.map_or(Some(true), |c| holds(&c, |name| self.values.get(name).copied()));
         match taken {
             Some(true) => self.target = Some(target),
@@ -182,7 +183,7 @@ impl Branches {
     fn holds(&self, condition: &str) -> Option<bool> {
         let condition = compact(condition);
         let mut condition = condition.strip_prefix('[')?.strip_suffix(']')?.to_owned();
-        // Names may hold the letters of a comparison: those are in angle brackets.
+        // Names may contain the letters of a comparison, but are in angle brackets.
         let from = condition.find('>').map_or(0, |at| at + 1);
         let (at, (word, sign)) = SIGNS.iter().find_map(|s| Some((from + condition[from..].find(s.0)?, *s)))?;
         condition.replace_range(at..at + word.len(), "\u{1}");

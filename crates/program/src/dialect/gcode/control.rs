@@ -1,4 +1,4 @@
-//! What CNC controls do in languages of their own: branches, heights added to layers, names of files.
+//! What CNC controls write in languages of their own: branches, heights added to layers, file names.
 
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +47,7 @@ impl GcodeControl {
         name
     }
 
-    /// The variable that holds where to begin.
+    /// The variable that holds the pass at which to begin.
     pub(super) fn variable(self) -> &'static str {
         match self {
             Self::Linuxcnc => "#<_start>",
@@ -67,7 +67,8 @@ impl GcodeControl {
         matches!(self, Self::Fanuc | Self::Twincat)
     }
 
-    /// A forward jump to a label where the variable is above a number; `None` where there are blocks instead of jumps.
+    /// A forward jump to a label if the variable is greater than a number; `None` for controls that use blocks instead
+    /// of jumps.
     pub(super) fn jump_if_above(self, number: usize, label: usize) -> Option<String> {
         let variable = self.variable();
         match self {
@@ -78,7 +79,7 @@ impl GcodeControl {
         }
     }
 
-    /// A forward jump to a label where the variable is 0.
+    /// A forward jump to a label if the variable is 0.
     pub(super) fn jump_if_zero(self, label: usize) -> Option<String> {
         let variable = self.variable();
         match self {
@@ -99,7 +100,7 @@ impl GcodeControl {
         }
     }
 
-    /// The block that a jump goes to.
+    /// The block that a jump leads to.
     pub(super) fn label(self, label: usize) -> Option<String> {
         match self {
             Self::Linuxcnc => None,
@@ -109,7 +110,7 @@ impl GcodeControl {
         }
     }
 
-    /// The block that adds a height (mm, as text) to what follows; 0 removes it.
+    /// The block that adds a height (mm, as text) to the following ones; 0 removes it.
     pub(super) fn raise(self, height: &str) -> String {
         match self {
             Self::Linuxcnc | Self::Fanuc => format!("G52 X0.0 Y0.0 Z{height}"),

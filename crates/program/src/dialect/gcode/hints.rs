@@ -2,7 +2,7 @@
 
 use super::block::parse;
 
-/// What a first look through the whole file reveals.
+/// Results of a first pass through the whole file.
 pub(super) struct Hints {
     /// Whether it has E words.
     pub(super) printer: bool,
@@ -15,7 +15,7 @@ pub(super) struct Hints {
     pub(super) fanuc: bool,
 }
 
-/// Looks through the file; slicers write the diameter at its end.
+/// Scans the file; slicers write the diameter at its end.
 pub(super) fn of(text: &str) -> Hints {
     let mut hints = Hints { printer: false, diameter: None, volumetric: false, fanuc: false };
     for line in text.as_bytes().split(|&b| b == b'\n') {

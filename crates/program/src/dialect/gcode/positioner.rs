@@ -1,4 +1,5 @@
-//! Rotary axes under the part, on controls that keep the torch's tip on the part while the axes turn (tool centre point control).
+//! Rotary axes under the part, on controls with tool centre point control, which keeps the torch's tip on the part
+//! while the axes turn.
 
 use super::section::is_axis;
 use crate::dialect::Templates;
@@ -15,13 +16,14 @@ pub(super) const TABLE: &str = "It says how the control names the axes that turn
 /// Decimal places of angles, °: 0.001° is less than 0.01 mm at half a metre.
 const DECIMALS: usize = 3;
 
-/// The table `[gcode.positioner]`: rotary axes under the part, and how the control keeps the torch's tip on the part while they
-/// turn. With it on, X, Y and Z are places on the part and F is the speed of the tip along the part.
+/// The table `[gcode.positioner]`: rotary axes under the part, and how the control keeps the torch's tip on the part
+/// while they turn. With that on, X, Y and Z are positions on the part and F is the speed of the tip along the part.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GcodePositioner {
-    /// The words of the axes, in the order of `program.positioner.axes`, such as `["A", "C"]`, or `["A=", "C="]` (Siemens).
+    /// The addresses of the axes, in the order of `program.positioner.axes`, such as `["A", "C"]`, or `["A=", "C="]`
+    /// (Siemens).
     pub axes: Vec<String>,
     /// Blocks that switch tool centre point control on: `M428` (LinuxCNC's example of a tilting table), `G43.4 H1` (Fanuc),
     /// `TRAORI` (Siemens).
@@ -65,15 +67,15 @@ impl GcodePositioner {
     }
 }
 
-/// What turns directions of the part, with all axes at 0, into those of the machine.
+/// The rotation from directions of the part, with all axes at 0, to those of the machine.
 fn standing(positioner: &Positioner) -> DQuat {
     positioner.held([0.0; 2]).turn
 }
 
-/// The axes as a program goes on.
+/// The state of the axes while a program is written.
 pub(super) struct Axes {
     pub(super) words: GcodePositioner,
-    /// The greatest speeds, °/s.
+    /// Greatest speeds, °/s.
     speeds: Vec<f64>,
     standing: DQuat,
     /// How the part is to be held from the next move on.
@@ -88,7 +90,7 @@ impl Axes {
         Self { words: words.clone(), speeds, standing: standing(positioner), held: None, written: None }
     }
 
-    /// Where X, Y and Z put a place of the part while tool centre point control is on, mm.
+    /// X, Y and Z, mm, of a point of the part while tool centre point control is on.
     pub(super) fn on_part(&self, place: DVec3) -> DVec3 {
         self.standing * place
     }
@@ -108,7 +110,7 @@ impl Axes {
         self.wanted() != self.written
     }
 
-    /// Time and angle of a turn without any other move, s and °; controls take F as degrees per minute for it.
+    /// Time and angle of a turn without any other move, s and °; controls then take F as degrees per minute.
     pub(super) fn turn(&self) -> Option<(f64, f64)> {
         let (from, to) = self.written.zip(self.wanted())?;
         let by: Vec<f64> = (0..self.words.axes.len()).map(|k| (to[k] - from[k]).abs()).collect();
@@ -116,7 +118,7 @@ impl Axes {
         Some((seconds, by.iter().map(|by| by * by).sum::<f64>().sqrt()))
     }
 
-    /// Writes the words of the axes that turn.
+    /// Writes the words of the axes that are to turn.
     pub(super) fn write(&mut self, text: &mut String) {
         let Some(wanted) = self.wanted() else { return };
         for (k, word) in self.words.axes.iter().enumerate() {
@@ -129,12 +131,12 @@ impl Axes {
         self.written = Some(wanted);
     }
 
-    /// The angles written last, °; `None` where they are not known.
+    /// The angles last written, °; `None` if they are unknown.
     pub(super) fn written(&self) -> Option<[f64; 2]> {
         self.written
     }
 
-    /// The axes are at these angles, °; `None` where nothing is known about them.
+    /// Sets the angles of the axes, °; `None` if they are unknown.
     pub(super) fn stand(&mut self, at: Option<[f64; 2]>) {
         self.written = at;
     }

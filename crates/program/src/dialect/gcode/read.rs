@@ -1,7 +1,7 @@
-//! G-code of CNC machines and printers.
+//! Reads G-code of CNC machines and printers.
 //!
 //! A file with E words is for a printer: it lays metal when E exceeds its greatest value so far, so retracting and
-//! priming lay nothing. In other files metal is laid while the arc burns (from M3 or M4 to M5, and by the codes in the
+//! priming lay nothing. In other files metal is laid while the arc is on (from M3 or M4 to M5, and by the codes in the
 //! options).
 
 use super::block::{Block, Code, Line, begins_block};
@@ -17,7 +17,7 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 /// Inch in mm.
 const INCH: f64 = 25.4;
 
-/// What happens to offsets that a program sets.
+/// How offsets set by a program are reported.
 const SHIFTS: &str = "shifts what follows, which is not applied";
 
 /// Codes in tenths that affect neither position nor metal.
@@ -84,7 +84,7 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
     reader.trace.finish(super::DIALECT.language)
 }
 
-/// The extruder: the value of E, and how much filament was pushed in total.
+/// The extruder: the value of E, and the length of filament pushed in total.
 #[derive(Default)]
 struct Extruder {
     at: f64,
@@ -94,7 +94,7 @@ struct Extruder {
 }
 
 impl Extruder {
-    /// Length of filament that leaves the nozzle for a word `e`.
+    /// Length of filament that leaves the nozzle for the word E`e`, mm.
     fn push(&mut self, e: f64, relative: bool) -> f64 {
         let by = if relative { e } else { e - self.at };
         self.at += by;
@@ -108,11 +108,11 @@ impl Extruder {
 struct Reader {
     trace: Trace,
     printer: bool,
-    /// Whether the control counts waits as Fanuc controls do.
+    /// Whether G4 P is in milliseconds, as on Fanuc controls.
     fanuc: bool,
     on: Vec<Code>,
     off: Vec<Code>,
-    /// mm per unit
+    /// Millimetres per unit of the program.
     unit: f64,
     relative: bool,
     absolute_centres: bool,
@@ -120,23 +120,23 @@ struct Reader {
     flat: bool,
     inverse_time: bool,
     motion: Option<i32>,
-    /// F as mm/min, or as 1/min in inverse time.
+    /// F in mm/min, or in 1/min for inverse time.
     feed: f64,
     /// Machine coordinates minus those of the program, mm.
     offset: DVec3,
     extruder: Extruder,
-    /// mm² of filament; none where E is a volume.
+    /// Cross-section of the filament, mm²; `None` if E is a volume.
     filament_area: Option<f64>,
     width: Option<f64>,
     flow: f64,
     pace: f64,
-    /// Speed of the spindle.
+    /// Spindle speed.
     spindle: f64,
     /// The first line that starts the spindle without a speed.
     lit_without_speed: Option<usize>,
     /// Angles of A, B and C, °.
     angles: [f64; 3],
-    /// Whether tool centre point control is on: X, Y and Z are then places on the part, however axes turn it.
+    /// Whether tool centre point control is on: X, Y and Z are then positions on the part, however axes turn it.
     tip_control: bool,
 }
 
@@ -174,7 +174,7 @@ impl Reader {
         }
     }
 
-    /// Slicers write the bead width in comments.
+    /// Reads the bead width that slicers write in comments.
     fn comment(&mut self, line: &[u8]) {
         if self.printer && line.first() == Some(&b';') {
             self.width = hints::width(line).or(self.width);
@@ -189,7 +189,7 @@ impl Reader {
         } else if self.off.iter().any(|c| c.is_macro(&compact)) {
             self.trace.set_arc(false, number);
         } else if let Some(rest) = words::strip_word(text.trim(), "TRANS") {
-            // Siemens: a shift of what follows.
+            // Siemens: a shift of the following coordinates.
             let zero = rest.split_whitespace().all(|word| words::number(&word[1..]) == Some(0.0));
             if !zero {
                 self.trace.note("TRANS", SHIFTS, number);
@@ -203,7 +203,7 @@ impl Reader {
         }
     }
 
-    /// One block; true at the end of the program.
+    /// Reads one block; true at the end of the program.
     fn block(&mut self, block: &Block, line: usize) -> Result<bool, ReadError> {
         self.modes(block, line);
         if self.on.iter().any(|c| c.is_in(block)) {
@@ -242,7 +242,7 @@ impl Reader {
                     self.trace.note("G5", "is a spline and was read as a straight move", line);
                 }
                 170 | 180 | 190 => self.flat = code == 170,
-                // G70 and G700, G71 and G710 of Siemens.
+                // Also G70, G700, G71 and G710 of Siemens.
                 200 | 700 | 7000 => self.unit = INCH,
                 210 | 710 | 7100 => self.unit = 1.0,
                 900 | 910 => self.relative = code == 910,
@@ -285,7 +285,7 @@ impl Reader {
         }
     }
 
-    /// Switches tool centre point control. Where axes have turned the part, the torch is then at other coordinates.
+    /// Switches tool centre point control. If axes have turned the part, the torch then has other coordinates.
     fn control_tip(&mut self, on: bool) {
         if on != self.tip_control && self.angles != [0.0; 3] {
             self.trace.forget();
@@ -309,7 +309,7 @@ impl Reader {
                 _ => self.trace.note("M200", "without a diameter is not understood and was left out", line),
             },
             20 | 300 if !self.printer => {}
-            // As LinuxCNC's examples of tilting tables have them.
+            // As used in LinuxCNC's examples of tilting tables.
             4280 | 4290 if !self.printer => self.control_tip(code == 4280),
             _ if code % 10 == 0 && HARMLESS_M.contains(&(code / 10)) => self.seen(code, block),
             _ if self.on.iter().chain(&self.off).any(|c| c.is_in(block)) => {}
@@ -328,9 +328,9 @@ impl Reader {
         }
     }
 
-    /// Seconds of a G4.
+    /// Wait of a G4, s.
     fn dwell(&self, block: &Block) -> f64 {
-        // On Fanuc controls a P with a decimal point is in seconds, and nobody waits for less than 10 ms.
+        // On Fanuc controls a P with a decimal point is in seconds, and nobody waits less than 10 ms.
         let milliseconds = |p: f64| self.printer || (self.fanuc && p >= 10.0 && p.fract() == 0.0);
         let p = block.get(b'P').map(|p| if milliseconds(p) { p / 1000.0 } else { p });
         let seconds = [block.get(b'S'), p, block.get(b'X'), block.get(b'F')].into_iter().flatten().next();
@@ -342,7 +342,7 @@ impl Reader {
         for (axis, letter) in [b'X', b'Y', b'Z'].into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
                 self.offset[axis] = self.trace.at[axis] - value * self.unit;
-                // A position that was unknown is now known by these coordinates.
+                // These coordinates make an unknown position known.
                 if !self.trace.known[axis] {
                     (self.offset[axis], self.trace.at[axis]) = (0.0, value * self.unit);
                     self.trace.known[axis] = true;
@@ -359,7 +359,7 @@ impl Reader {
         if self.filament_area.is_some() { self.unit } else { 1.0 }
     }
 
-    /// G28: a printer is then at 0, but a machine's reference point may be anywhere.
+    /// G28: a printer is then at 0, while a machine's reference point may be anywhere.
     fn home(&mut self, block: &Block, line: usize) {
         let all = !b"XYZ".iter().any(|&l| block.names(l));
         let homed = [b'X', b'Y', b'Z'].map(|l| all || block.names(l));
@@ -396,7 +396,7 @@ impl Reader {
         let across = arc || to.truncate() != start.truncate();
         let metal = match laid > 0.0 && across {
             true => Metal::Volume(laid),
-            // Whatever the arc does, no bead is laid in a rapid move.
+            // Whatever the state of the arc, no bead is laid in a rapid move.
             false if motion == 0 && !self.printer => Metal::Off,
             false => self.trace.metal(),
         };
@@ -417,7 +417,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Refuses a motion that names an axis without a number.
+    /// Refuses a motion that names an axis without giving a number.
     fn whole(&self, block: &Block, line: usize, moves: bool) -> Result<(), ReadError> {
         let moves = moves || [0, 10, 20, 30].into_iter().any(|g| block.g.has(g));
         match [b'X', b'Y', b'Z'].into_iter().find(|&l| moves && block.names(l) && !block.has(l)) {
@@ -436,7 +436,7 @@ impl Reader {
         target
     }
 
-    /// mm/s, 0 for unknown.
+    /// Speed, mm/s; 0 if unknown.
     fn speed(&self, motion: i32, length: f64) -> f64 {
         match motion {
             // A printer obeys F in G0 too.
@@ -446,7 +446,7 @@ impl Reader {
         }
     }
 
-    /// The arc of a G2 or G3; none when it was noted and is read as a line.
+    /// The arc of a G2 or G3; `None` if it was noted and is read as a line.
     fn curve(&mut self, block: &Block, to: DVec3, line: usize) -> Option<Curve> {
         if !self.flat {
             self.trace.note("an arc outside the XY plane (G18, G19)", "was read as a straight move", line);

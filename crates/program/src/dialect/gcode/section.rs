@@ -27,8 +27,8 @@ pub struct Gcode {
     pub percent_signs: bool,
     /// O number of the program (Fanuc); default none.
     pub program_number: Option<u32>,
-    /// Height to which the torch moves before its first horizontal move, in the part's coordinates, mm: above clamps, and
-    /// above the part where a program begins in its middle; default 100.
+    /// Height to which the torch moves before its first horizontal move, in the part's coordinates, mm: above clamps,
+    /// and above the part if a program begins in its middle; default 100.
     #[serde(default = "hundred")]
     pub safe_z: f64,
     /// How comments are written: `parentheses` or `semicolon` (Siemens); default parentheses.
@@ -144,11 +144,11 @@ impl Section for Gcode {
 
     fn supports(&self, extra: Extra) -> bool {
         match extra {
-            // A wire axis would feed at once what was left out.
+            // The wire axis would feed at once the wire of the skipped passes.
             Extra::Restart => self.control.is_some() && self.wire_axis.is_none(),
             Extra::LayerOffsets => self.control.is_some(),
             Extra::Weave => true,
-            // The part turns, and the torch hangs straight down.
+            // The part turns, and the torch points straight down.
             Extra::Chart => self.positioner.is_some(),
             Extra::Tilt => false,
         }
@@ -168,7 +168,7 @@ impl Section for Gcode {
     }
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
-        // An axis follows the wire feed by itself.
+        // A wire axis follows the wire feed by itself.
         if self.wire_axis.is_none() || job.weld.ends.wire_retract > 0.0 {
             needs::lines("gcode", &self.templates(), "M67 E0 Q{{wire_feed_ratio}}", job)?;
         }

@@ -1,5 +1,5 @@
-//! CNC G-code: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens, TwinCAT) are
-//! set by keys and templates in the profile. Where rotary axes turn the part, places are those on the part.
+//! Writes CNC G-code: one file, feeds in mm/min, G0 never with the arc on. Flavours (LinuxCNC, Fanuc, Siemens, TwinCAT)
+//! are set by keys and templates in the profile. If rotary axes turn the part, coordinates are those on the part.
 
 use super::control::GcodeControl;
 use super::positioner::Axes;
@@ -12,13 +12,13 @@ use crate::program::{Attitude, Circle, Instruction};
 use bead_plan::pass::PassKind;
 use glam::DVec3;
 
-/// Highest block number that a jump finds.
+/// Highest block number that a jump can find.
 const MAX_LABEL: usize = 99_999;
 
 /// Block numbers start again after this one.
 const MAX_BLOCK: usize = 99_990;
 
-/// A comment may have this many characters: blocks stay under 80.
+/// Most characters of a comment, so that blocks stay under 80.
 const MAX_COMMENT: usize = 60;
 
 /// Writes G-code.
@@ -31,15 +31,15 @@ pub(super) struct CncGcode {
     feed: f64,
     /// Wire fed so far, mm.
     wire: f64,
-    /// What X, Y and Z were last, mm.
+    /// X, Y and Z last written, mm.
     at: Option<DVec3>,
-    /// What turns the part.
+    /// The axes that turn the part.
     axes: Option<Axes>,
     /// Whether blocks have numbers.
     numbered: bool,
-    /// Labels so far.
+    /// Number of labels written.
     labels: usize,
-    /// What ends the branches that are open.
+    /// Lines that end the open branches.
     open: Vec<String>,
 }
 
@@ -89,7 +89,7 @@ impl CncGcode {
         text.push('\n');
     }
 
-    /// The control, where the program can begin at any pass.
+    /// The control, if the program can begin at any pass.
     fn restarts(&self) -> Option<GcodeControl> {
         self.gcode.control.filter(|_| self.frame.program.restart)
     }
@@ -99,17 +99,17 @@ impl CncGcode {
         self.labels
     }
 
-    /// A height, mm, that is added to all that follows.
+    /// Adds a height, mm, to the following moves.
     fn raise(&mut self, text: &mut String, height: &str) {
         if let Some(control) = self.gcode.control.filter(|_| self.frame.program.layer_offsets) {
             self.begin_block(text);
             self.plain(text, &control.raise(height));
-            // Whether it moves the torch's coordinates is not known here.
+            // Whether this changes the torch's coordinates is unknown here.
             self.at = None;
         }
     }
 
-    /// A move to a place of the part; axes that do not move are left out.
+    /// A move to a point of the part; axes that do not move are omitted.
     fn motion(&mut self, text: &mut String, word: &str, place: DVec3, circle: Option<Circle>, pace: Pace) {
         let to = self.axes.as_ref().map_or(place, |axes| axes.on_part(place));
         let moved = [0, 1, 2].map(|axis| self.at.is_none_or(|at| at[axis] != to[axis]));
@@ -145,7 +145,7 @@ impl CncGcode {
         }
     }
 
-    /// Blocks that switch tool centre point control on or off, where there is any; what X, Y and Z are is then not known.
+    /// Writes the blocks that switch tool centre point control, if there are any; X, Y and Z are then unknown.
     fn switch_tcp(&mut self, text: &mut String, on: bool) {
         let Some(axes) = &self.axes else { return };
         let lines = if on { &axes.words.tcp_on } else { &axes.words.tcp_off };
@@ -154,7 +154,7 @@ impl CncGcode {
         self.at = None;
     }
 
-    /// Moves the wire axis, if there is one, as far as it goes in that time.
+    /// Moves the wire axis, if there is one, as far as it feeds in that time.
     fn feed_wire(&mut self, text: &mut String, seconds: f64) {
         if let Some(axis) = &self.gcode.wire_axis {
             self.wire += self.wire_speed() * seconds;
@@ -163,7 +163,7 @@ impl CncGcode {
         }
     }
 
-    /// mm/s
+    /// Speed of the wire, mm/s.
     fn wire_speed(&self) -> f64 {
         self.frame.process.wire_feed_speed * self.frame.feed * 1000.0 / 60.0
     }
@@ -173,14 +173,14 @@ impl CncGcode {
     }
 }
 
-/// How fast a move runs.
+/// Speed of a move.
 #[derive(Clone, Copy)]
 enum Pace {
-    /// As fast as it can.
+    /// Rapid.
     Rapid,
-    /// mm/s, with the arc off.
+    /// Speed, mm/s, with the arc off.
     Travel(f64),
-    /// mm/s, with the arc on.
+    /// Speed, mm/s, with the arc on.
     Weld(f64),
 }
 
@@ -255,15 +255,15 @@ impl Syntax for CncGcode {
     }
 
     fn line(&mut self, text: &mut String, line: &str) {
-        // LinuxCNC accepts no number before an O word; parameters are set in the same way.
+        // LinuxCNC accepts no block number before an O word, nor here before a parameter.
         if !line.starts_with(['O', '#']) {
             self.begin_block(text);
         }
         self.plain(text, line);
     }
 
-    /// Every O word has a number of its own: that of the pass or layer, and a digit, which is 1 or 2 here; the others are for
-    /// the lines of the profile.
+    /// Every O word has its own number: that of the pass or layer, followed by a digit, which is 1 or 2 here; the
+    /// others are left to the lines of the profile.
     fn begin_skippable(&mut self, text: &mut String, what: Skippable) {
         let Some(control) = self.restarts() else { return };
         let (number, label) = (what.number(), self.new_label());
@@ -280,7 +280,7 @@ impl Syntax for CncGcode {
         }
     }
 
-    /// Nothing is known about what the branch did.
+    /// After the branch, nothing is known of its effects.
     fn end_skippable(&mut self, text: &mut String) {
         if let Some(end) = self.open.pop() {
             self.plain(text, &end);
@@ -292,7 +292,7 @@ impl Syntax for CncGcode {
     fn begin_way(&mut self, text: &mut String, number: usize, above: DVec3) {
         let Some(control) = self.restarts() else { return };
         let (way, behind) = (self.new_label(), self.new_label());
-        // What comes between the two branches, and after both.
+        // Between the two branches, and after both.
         let jumps = (control.jump_if_zero(way), control.jump(behind), control.label(way), control.label(behind));
         let (begin, between, end) = match jumps {
             (Some(unless), Some(jump), Some(way), Some(behind)) => (unless, vec![jump, way], behind),
@@ -313,7 +313,8 @@ impl Syntax for CncGcode {
         self.open.push(end);
     }
 
-    /// The machine may be anywhere at first: to the safe height, across, and down. What turns the part turns it at that height.
+    /// The machine may start anywhere: moves to the safe height, across, and down. Axes that turn the part turn it at
+    /// that height.
     fn approach(&mut self, text: &mut String, to: DVec3) {
         self.switch_tcp(text, false);
         self.axes.iter_mut().for_each(|axes| axes.stand(None));
@@ -337,7 +338,7 @@ impl Syntax for CncGcode {
         self.axes.iter_mut().for_each(|axes| axes.held = attitude.held.or(axes.held));
     }
 
-    /// A rapid move would turn the part as fast as it can.
+    /// Not rapid if axes turn the part, since a rapid move would turn it as fast as it can.
     fn travel(&mut self, text: &mut String, to: DVec3) {
         let speed = self.frame.travel_speed;
         match self.axes {
@@ -355,7 +356,7 @@ impl Syntax for CncGcode {
         self.motion(text, word, piece.to, piece.circle, Pace::Weld(piece.speed));
     }
 
-    /// A wire axis continues alone, at its own speed, where others wait.
+    /// Where others wait, a wire axis continues on its own at its own speed.
     fn fill(&mut self, text: &mut String, seconds: f64) {
         if self.gcode.wire_axis.is_none() {
             return self.wait(text, seconds);

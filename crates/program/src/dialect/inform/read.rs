@@ -1,10 +1,10 @@
-//! Yaskawa INFORM (`.jbi`): MOVJ, MOVL and MOVC to the positions of the job, and the jobs that it calls.
+//! Reads Yaskawa INFORM (`.jbi`): MOVJ, MOVL and MOVC to the positions of the job, and the jobs that it calls.
 //!
-//! Positions are in the job's frame. The arc is switched by `ARCON` and `ARCOF`, or by the codes in the options.
-//! Consecutive MOVC are one chain to the controller. Three of them are an arc; `FPT` on the last, or a MOVL to it, ends
-//! that arc and lets the next one begin there, which Yaskawa's manuals require where the circle changes. Without either,
-//! each further point lies on the circle through it and the two points before (u: confirmed only for points of one
-//! circle, so a chain that leaves its circle is noted).
+//! Positions are in the job's frame. The arc is switched by `ARCON` and `ARCOF`, or by the codes in the options. To the
+//! controller, consecutive MOVC are one chain. Three of them are an arc; `FPT` on the last, or a MOVL to it, ends that
+//! arc and lets the next one begin there, which Yaskawa's manuals require where the circle changes. Without either,
+//! each further point lies on the circle through it and the two points before it. (Unconfirmed: verified only for
+//! points of one circle, so a chain that leaves its circle is noted.)
 
 use crate::dialect::reading::fault::{BAD_NAME, BLENDED_SWITCH, RAPID_WITH_ARC, TOO_LARGE, WEAVE_LEFT_ON};
 use crate::dialect::reading::loops::{Next, holds, unrolled};
@@ -75,7 +75,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
     reader.trace.finish(super::DIALECT.language)
 }
 
-/// How far a chain of arcs has got.
+/// State of a chain of arcs.
 #[derive(Clone, Copy)]
 enum Circle {
     /// No chain.
@@ -94,17 +94,17 @@ struct Reader<'a> {
     jobs: HashMap<String, Rc<Job>>,
     on: Patterns,
     off: Patterns,
-    /// mm/s of V=1.
+    /// mm/s for V=1.
     unit: f64,
     circle: Circle,
     /// Variables with a plain number, such as `D090`.
     variables: HashMap<String, f64>,
-    /// Whether the shift that may be switched on is known to be 0.
+    /// Whether the active shift is known to be 0.
     unshifted: bool,
     /// How the last move blends into the next, if it does not end exactly.
     blended: Option<String>,
     weaves: bool,
-    /// Whether moves are shifted.
+    /// Whether a shift is active.
     shifts: bool,
 }
 
@@ -171,8 +171,8 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// How many instructions `JUMP *L1 IF D090>5` jumps ahead, 0 where it does not jump; `None` for anything else, conditions
-    /// of which nothing is known, and labels that do not come after it.
+    /// The number of instructions that `JUMP *L1 IF D090>5` jumps ahead, 0 if it does not jump; `None` for anything
+    /// else, for conditions that cannot be evaluated, and for labels that do not come after it.
     fn jump(&self, text: &str, behind: &[(usize, String)]) -> Option<usize> {
         let jump = text.strip_prefix("JUMP ")?;
         let (label, condition) = jump.split_once(" IF ").unwrap_or((jump, "0=0"));
@@ -258,7 +258,7 @@ impl Reader<'_> {
         }
     }
 
-    /// `MOVL C00001 V=8.0 PL=0`, `kind` being `L`.
+    /// `MOVL C00001 V=8.0 PL=0`, with `kind` = `L`.
     fn motion(&mut self, kind: &str, words: &[&str], line: usize, job: &Job) -> Result<(), ReadError> {
         let name = words.first().copied().unwrap_or_default();
         let position = job.positions.get(name).copied();

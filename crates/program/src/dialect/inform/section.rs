@@ -70,7 +70,7 @@ pub struct Inform {
     pub crater: Vec<String>,
     /// Instructions at the end of the main job.
     pub end: Vec<String>,
-    /// Number of the D variable that holds where to begin, for `program.restart`; default 90.
+    /// Number of the D variable that holds the pass at which to begin, for `program.restart`; default 90.
     #[serde(default = "ninety")]
     pub restart_variable: u32,
     /// Number of the P variable that holds the shift of a layer, for `program.layer_offsets`; default 90.

@@ -1,9 +1,9 @@
-//! Yaskawa INFORM (DX200, YRC1000): `NAME.jbi` calls `NAME-L001.jbi` and so on, relative jobs in a user frame; a long
-//! layer continues in `NAME-L001-2.jbi`.
+//! Writes Yaskawa INFORM (DX200, YRC1000): `NAME.jbi` calls `NAME-L001.jbi` and so on, relative jobs in a user frame; a
+//! long layer continues in `NAME-L001-2.jbi`.
 //!
-//! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first is where the arc
-//! begins, so the robot does not move for it. Consecutive MOVC are one chain to the controller, so a MOVL to the shared
-//! point separates an arc from the next.
+//! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first is at the arc's start, so
+//! the robot does not move for it. To the controller, consecutive MOVC are one chain, so a MOVL to the shared point
+//! separates an arc from the next.
 
 use super::section::{Inform, InformSpeed};
 use crate::dialect::writing::frame::{self, Frame, Part, Piece, Skippable, Syntax};
@@ -15,13 +15,13 @@ use bead_plan::pass::PassKind;
 use glam::DVec3;
 use std::fmt::Write as _;
 
-/// Comments may have this many characters.
+/// Most characters of a comment.
 const MAX_COMMENT: usize = 32;
 
 /// Longest wait of one timer, s.
 const MAX_WAIT: f64 = 600.0;
 
-/// Room for `-L`, and for the number of a split layer (which short names do without as long as they can).
+/// Characters reserved for `-L`, and for the number of a split layer (which short names omit if they can).
 const SUFFIX: usize = 2;
 
 /// Writes INFORM.
@@ -77,7 +77,7 @@ impl YaskawaInform {
         }
     }
 
-    /// The height to be added to a layer, which is set in its job, µm; all moves up to SFTOF are shifted by it.
+    /// The height added to a layer, set in its job, µm; all moves up to SFTOF are shifted by it.
     fn offset(&self, job: &mut JobText) {
         if self.frame.program.layer_offsets {
             let (variable, frame) = (self.inform.offset_variable, self.inform.user_frame);
@@ -118,7 +118,7 @@ impl YaskawaInform {
         (self.at, self.in_arc) = (to, word == "MOVC");
     }
 
-    /// Three MOVC from where the torch is.
+    /// Three MOVC from the current position.
     fn arc(&mut self, job: &mut JobText, via: DVec3, to: DVec3, speed: f64, level: u32) {
         let between = self.inform.position_level;
         if self.in_arc {
@@ -166,7 +166,7 @@ impl Syntax for YaskawaInform {
     }
 
     fn longest_name(&self, digits: usize) -> usize {
-        // Where names may be longer, those of split layers fit too: "-L001-2".
+        // If names may be longer, reserve space for split layers: "-L001-2".
         let more = if self.inform.max_name > 16 { 4 } else { 2 };
         (self.inform.max_name - SUFFIX - digits).saturating_sub(more).max(1)
     }
@@ -179,7 +179,7 @@ impl Syntax for YaskawaInform {
         format!("{}-L{}", self.frame.name, part.number.replace('_', "-"))
     }
 
-    /// The main job is written at its end, when the number of its positions is known.
+    /// The main job is written at its end, when its number of positions is known.
     fn begin_main(&mut self) -> Vec<Chunk> {
         let pulses = self.inform.home.map(|pulse| pulse.to_string()).join(",");
         let positions = format!("C00000={pulses}\r\nC00001={pulses}\r\n");

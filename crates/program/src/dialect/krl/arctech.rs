@@ -1,11 +1,11 @@
 //! Inline forms of KUKA ArcTech Basic 3.x: ARCON and ARCOFF as the pendant folds them, and their data.
 //!
-//! A form moves to its point and switches there: ARCON moves to the start and ignites, ARCOFF moves to the end and fills the
-//! crater. What lies between are plain motions with their own `$VEL.CP`; where the wire feed changes, and a channel holds it,
-//! the motion before is an ARCSWI, which takes about 1.5 kB. ARCOFF moves at the speed of the seam that the preceding form has
-//! set: that of the last piece. Every module declares the data of its forms in its own `.dat`: a point (`XPn`, `FPn`, `WPn`) for
-//! each form, and one `WDATn` for each distinct set of parameters. Not supported: switching without delay, and the
-//! package ArcTech Advanced.
+//! A form moves to its point and switches there: ARCON moves to the start and ignites, ARCOFF moves to the end and
+//! fills the crater. Between them are plain motions with their own `$VEL.CP`. Where the wire feed changes, and a
+//! channel holds it, the motion before the change is an ARCSWI, which takes about 1.5 kB. ARCOFF moves at the seam
+//! speed set by the preceding form: that of the last piece. Every module declares the data of its forms in its own
+//! `.dat`: a point (`XPn`, `FPn`, `WPn`) for each form, and one `WDATn` for each distinct set of parameters. Not
+//! supported: switching without delay, and the package ArcTech Advanced.
 
 use super::arctech_section::ArcTech;
 use super::section::{Krl, KrlMotion};
@@ -32,7 +32,7 @@ impl Form {
         }
     }
 
-    /// What the package calls its steps.
+    /// The package's name for the form.
     fn name(self) -> &'static str {
         match self {
             Self::On => "ArcOn",
@@ -42,10 +42,10 @@ impl Form {
     }
 }
 
-/// What is welded from a form on.
+/// Weld parameters set by a form.
 #[derive(Clone, Copy)]
 pub(super) struct Seam {
-    /// mm/s
+    /// Speed, mm/s.
     pub(super) speed: f64,
     /// The wire feed as a multiple of the nominal one.
     pub(super) feed: f64,
@@ -56,18 +56,18 @@ pub(super) struct Seam {
 /// How a crater is filled.
 #[derive(Clone, Copy)]
 pub(super) struct Filling {
-    /// s
+    /// Filling time, s.
     pub(super) seconds: f64,
-    /// The wire feed as a multiple of the nominal one; `None` where it stays as in the section.
+    /// The wire feed as a multiple of the nominal one; `None` if it stays as in the section.
     pub(super) feed: Option<f64>,
 }
 
 /// A motion of a form: poses as KRL aggregates.
 #[derive(Clone, Copy)]
 pub(super) struct Target<'a> {
-    /// A point of the circle before its end.
+    /// The auxiliary point of a circular motion.
     pub(super) via: Option<&'a str>,
-    /// Where it ends.
+    /// The end point.
     pub(super) to: &'a str,
 }
 
@@ -95,21 +95,21 @@ pub(super) struct Forms {
     start_time: f64,
     preflow: f64,
     postflow: f64,
-    /// m/min
+    /// Nominal wire feed, m/min.
     wire_feed: f64,
-    /// Job of the power source that the section's channels hold.
+    /// Job of the power source set in the section's channels.
     job: u32,
-    /// Speed without arc, m/s.
+    /// Travel speed, m/s.
     travel: String,
-    /// Contents of the weave's data.
+    /// Contents of the weave data.
     weave: String,
-    /// Contents of the weld data sets so far, in order: set n is at index n − 1.
+    /// Contents of the weld data sets, in order: set n is at index n − 1.
     sets: Vec<String>,
     points: usize,
     data: String,
 }
 
-/// Refuses what the forms cannot do.
+/// Refuses jobs that the forms cannot carry out.
 pub(super) fn check(krl: &Krl, arctech: &ArcTech, job: &Job<'_>) -> Result<(), DialectError> {
     let cannot = |what, remedy| Err(DialectError::Cannot { dialect: "krl", what, remedy });
     if krl.motion == KrlMotion::Slin {
@@ -131,7 +131,7 @@ pub(super) fn check(krl: &Krl, arctech: &ArcTech, job: &Job<'_>) -> Result<(), D
         Err(DialectError::NoKey { profile: job.profile.clone(), key, why, remedy })
     };
     let process = &job.weld.process;
-    // A job of the power source has a wire feed of its own.
+    // A job of the power source defines its own wire feed.
     let by_job = process.layers.iter().all(|row| row.job.is_some()) && arctech.job_channel.is_some();
     let why = match process.follow {
         Follow::WireFeed => Some("process.follow = \"wire-feed\" with arc = \"arctech\""),
@@ -194,7 +194,7 @@ impl Forms {
         self.form(text, Form::On, Target { via: None, to }, set);
     }
 
-    /// Moves on along the pass and switches at the end of the move to what follows it.
+    /// Moves on along the pass and switches at the end of the move to the parameters that follow.
     pub(super) fn switch(&mut self, text: &mut String, target: Target<'_>, seam: Seam) {
         let set = self.weld_set(seam);
         self.form(text, Form::Switch, target, set);
@@ -227,7 +227,7 @@ impl Forms {
         )
     }
 
-    /// Channels of the section, with the wire feed and the job where the profile says which channels hold them.
+    /// The section's channels, with the wire feed and the job in the channels that the profile names for them.
     fn channels(&self, values: &[f64; 8], job: u32, feed: Option<f64>) -> String {
         let mut values = *values;
         let mut put = |channel: Option<u32>, value: f64| {
@@ -241,7 +241,7 @@ impl Forms {
         channels(&values)
     }
 
-    /// Number of the data set with these contents, which is declared if it is new.
+    /// Number of the data set with these contents; a new one is declared.
     fn set_number(&mut self, contents: String) -> usize {
         if let Some(known) = self.sets.iter().position(|s| *s == contents) {
             return known + 1;
@@ -301,7 +301,7 @@ impl Forms {
         let help = via.map_or(String::new(), |via| format!("P{via} "));
         let parameter = via.map_or(String::new(), |via| format!(" Kuka.HelpPointName=P{via};"));
         let provider = format!("{}{}", word.to_lowercase(), motion.to_lowercase());
-        // The move to the start has a speed of its own; the seam has that of its data.
+        // The move to the start has its own speed; the seam has the speed in its data.
         let speed = if form == Form::On {
             format!("Vel={} m/s ", self.travel.trim_end_matches('0').trim_end_matches('.'))
         } else {
@@ -355,7 +355,7 @@ fn triggers(text: &mut String, form: Form, set: usize, of: &str) {
     }
 }
 
-/// How the torch swings; without a pattern the lengths are those of the package.
+/// Weave parameters; without a weave, lengths are the package's defaults.
 fn pattern(weave: Option<&Weave>) -> String {
     let (name, length, amplitude, dwell) = match weave {
         Some(weave) => ("Triangle", weave.length, weave.amplitude, weave.dwell),

@@ -1,4 +1,4 @@
-//! How motions of KRL are followed.
+//! Interprets the motions of KRL.
 
 use super::read::Reader;
 use super::words::{Motion, Target, number_before, with_speed};
@@ -95,7 +95,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A target with the axes that it leaves out where they are.
+    /// A target in which omitted axes keep their current values.
     fn whole(&self, motion: Motion, target: [Option<f64>; 3]) -> DVec3 {
         let (target, start) = (self.absolute(motion, target), self.trace.at);
         DVec3::from_array([0, 1, 2].map(|i| target[i].unwrap_or(start[i])))
@@ -106,7 +106,7 @@ impl Reader<'_> {
         [0, 1, 2].map(|i| target[i].map(|v| if motion.relative { at[i] + v } else { v }))
     }
 
-    /// A target written out or named; `None` when it is neither.
+    /// A target written out or named; `None` if it is neither.
     fn target(&self, text: &str, number: usize, source: usize) -> Result<Option<Target>, ReadError> {
         if text.starts_with('{') {
             return self.aggregate(text, number).map(Some);

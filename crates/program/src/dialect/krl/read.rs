@@ -1,8 +1,8 @@
-//! KUKA KRL: motions to Cartesian positions, named or written out, and the subprograms that a program calls.
+//! Reads KUKA KRL: motions to Cartesian positions, named or written out, and the subprograms that a program calls.
 //!
 //! Positions are in `$BASE`. The arc is struck by ArcTech (`ArcMainNG`, `ARCON`), by `ARC_ON( )` or by the codes in the
-//! options; a trigger at the end of a motion takes effect after that motion. In a spline block, SLIN and SCIRC are read as
-//! they are; only the controller knows how SPL curves, so it is refused where it welds.
+//! options; a trigger at the end of a motion takes effect after that motion. In a spline block, SLIN and SCIRC are read
+//! as they are; only the controller knows the path of SPL, so it is refused where it welds.
 
 use super::review;
 use super::words::{MOTIONS, Target, number_before, with_speed};
@@ -45,7 +45,7 @@ const HARMLESS: [&str; 24] = [
     "IMPORT",
 ];
 
-/// System programs that move nothing.
+/// System programs without motion.
 const SYSTEM: [&str; 2] = ["BAS", "SET_CD_PARAMS"];
 
 /// Branches and loops that are not followed, by their first words.
@@ -60,7 +60,7 @@ const BLOCKS: [(&str, &str); 3] = [("FOR", "ENDFOR"), ("IF", "ENDIF"), ("WHILE",
 
 /// A module: its text, where each program in it begins, and its data.
 pub(super) struct Source {
-    /// None for the main file.
+    /// Name of the module; `None` for the main file.
     pub(super) module: Option<String>,
     pub(super) text: Rc<str>,
     /// Name in upper case, byte after the DEF line, number of the next line.
@@ -70,7 +70,7 @@ pub(super) struct Source {
     arc_data: HashMap<String, ArcData>,
 }
 
-/// What an ArcTech data set says about speed and time.
+/// Speed and times of an ArcTech data set.
 #[derive(Clone, Copy)]
 struct ArcData {
     /// Weld speed, mm/s.
@@ -79,7 +79,7 @@ struct ArcData {
     pause: f64,
 }
 
-/// Times of an ArcTech data set for which the torch stands still, at the start and at the end of a seam.
+/// Times of an ArcTech data set during which the torch stands still, at the start and at the end of a seam.
 const PAUSES: [&str; 5] = ["PreFlowTime", "StartTime", "CraterTime", "BurnBackTime", "PostflowTime"];
 
 /// Whether a line can occur only in KRL.
@@ -111,7 +111,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         runs_on: false,
     };
     let main = reader.load(None, text.into())?;
-    // A fragment has no DEF and runs from its first line.
+    // A fragment without DEF starts at its first line.
     let start = match reader.sources[main].programs.first() {
         Some(&(_, byte, line)) => (byte, line),
         None if text.lines().any(|l| strip_word(l.trim_start(), "DEFDAT").is_some()) => {
@@ -133,13 +133,13 @@ pub(super) struct Reader<'a> {
     pub(super) sources: Vec<Source>,
     on: Patterns,
     off: Patterns,
-    /// mm/s, 0 for unknown
+    /// Speed, mm/s; 0 if unknown.
     pub(super) speed: f64,
-    /// mm/s, of the ArcTech data in use
+    /// Weld speed of the current ArcTech data, mm/s.
     weld_speed: Option<f64>,
-    /// mm/s, of the spline block
+    /// Speed of the spline block, mm/s.
     pub(super) block_speed: Option<f64>,
-    /// Whether the arc is on after the next motion; `None` if nothing switches it there.
+    /// State of the arc after the next motion; `None` if nothing switches it there.
     pub(super) later: Option<bool>,
     /// Variables with a plain number, in upper case.
     values: HashMap<String, f64>,
@@ -223,7 +223,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A line, and what comes after it.
+    /// Reads a line; returns what comes after it.
     fn line(
         &mut self,
         lines: &[&str],
@@ -240,7 +240,7 @@ impl Reader<'_> {
         }
     }
 
-    /// How often the block that begins with a line runs.
+    /// How often the block that begins with a line is run.
     fn block(&mut self, lines: &[&str], i: usize, number: usize) -> Next {
         let (word, rest) = name(lines[i]);
         let known = if word.eq_ignore_ascii_case("FOR") {
@@ -270,7 +270,8 @@ impl Reader<'_> {
         )
     }
 
-    /// Whether an input, a flag or an output is on while all is well: inputs and flags of a burning arc or of a watch are.
+    /// Whether an input, a flag or an output is on in normal operation: inputs and flags of a burning arc or of
+    /// monitoring are.
     fn is_on(&self, part: &str) -> Option<bool> {
         let flat = compact(part);
         let (kind, number) = flat.strip_suffix(']')?.split_once('[')?;
@@ -292,7 +293,7 @@ impl Reader<'_> {
             return Ok(());
         }
         let flat = compact(line);
-        // An output stops the advance run, unless CONTINUE comes before it.
+        // An output stops the advance run, unless CONTINUE precedes it.
         let runs_on = std::mem::replace(&mut self.runs_on, flat == "CONTINUE");
         if self.runs_on {
             return Ok(());
@@ -322,7 +323,7 @@ impl Reader<'_> {
         self.other(line, &flat, number, source, depth)
     }
 
-    /// Statements that themselves move nothing.
+    /// Handles statements without motion.
     fn other(&mut self, line: &str, flat: &str, number: usize, source: usize, depth: usize) -> Result<(), ReadError> {
         let (word, rest) = name(line);
         let is = |name: &&str| name.eq_ignore_ascii_case(word);
@@ -345,7 +346,7 @@ impl Reader<'_> {
         } else if rest.starts_with('(') && !SYSTEM.iter().any(is) {
             return self.call(word, rest, number, source, depth);
         } else if let Some(component) = flat.split_once("_SHIFT.Z=").map(|(_, component)| component) {
-            // A height to be added to a layer; ours are 0 until somebody sets them.
+            // The height added to a layer; ours are 0 until somebody sets them.
             if self.values.get(component) != Some(&0.0) {
                 self.trace.note("a height added to a layer", "is not applied", number);
             }
@@ -361,7 +362,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Remembers a plain number; what is computed is forgotten.
+    /// Remembers a plain number; computed values are forgotten.
     fn assign(&mut self, variable: &str, value: &str) {
         let variable = variable.to_ascii_uppercase();
         match words::number(value) {
@@ -384,7 +385,7 @@ impl Reader<'_> {
         if !flat.starts_with("TRIGGERWHEN") && !flat.contains("BEFOREMOVE") && !flat.contains("#ARCSWI") {
             self.trace.dwell += data.map_or(0.0, |data| data.pause);
         }
-        // An inline form holds its motion: the arc is switched at its end.
+        // An inline form contains its motion; the arc is switched at the end of it.
         let form = ["LIN", "PTP", "CIRC"].iter().find_map(|w| line.find(&format!(" {w} ")).map(|at| &line[at + 1..]));
         let at_end = flat.starts_with("TRIGGERWHEN") && !flat.contains("DISTANCE=0");
         if let Some(form) = form.filter(|_| starts(["ARCON", "ARCOFF"])) {
@@ -407,7 +408,7 @@ impl Reader<'_> {
         Ok(true)
     }
 
-    /// An output is switched.
+    /// Records that an output is switched.
     fn switch(&mut self, output: u32, on: bool, line: &str, number: usize) {
         if on {
             self.outputs.insert(output);

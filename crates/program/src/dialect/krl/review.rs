@@ -1,4 +1,4 @@
-//! What a welding programmer sees in a KRL program without running it: halts and waits in the routines of the watch, stops
+//! What a welding programmer notices in a KRL program without running it: halts and waits in monitoring routines, stops
 //! that leave outputs on, sizes and names.
 
 use super::read::{Source, is_head, output};
@@ -11,7 +11,7 @@ use std::collections::{BTreeSet, HashMap};
 /// Longest module name.
 const MAX_NAME: usize = 24;
 
-/// Looks through all programs that were read; `lit_with` are the outputs that are on while the arc burns.
+/// Reviews all programs that were read; `lit_with` are the outputs that are on while the arc burns.
 pub(super) fn program(
     trace: &mut Trace,
     sources: &[Source],
@@ -22,7 +22,7 @@ pub(super) fn program(
     for (i, source) in sources.iter().enumerate() {
         trace.module.clone_from(&source.module);
         for (k, (_, byte, line)) in source.programs.iter().enumerate() {
-            // What follows the main program runs while a pass is welded.
+            // Routines after the main program run while a pass is welded.
             let before = if i == 0 && k > 0 { lit_with.clone() } else { BTreeSet::new() };
             routine(trace, &source.text[*byte..], *line, before, lit_with);
         }
@@ -35,7 +35,7 @@ pub(super) fn program(
     }
     trace.module = None;
     let stops = |condition: &String| condition.contains("$STOPMESS") || condition.contains("$PRO_ACT");
-    // Number 3 is the controller's own, IR_STOPM, which switches no outputs of a process.
+    // Interrupt 3 is the controller's own, IR_STOPM, which switches no process outputs.
     let covered = interrupts.iter().any(|(number, condition)| *number != 3 && stops(condition));
     if trace.watch.by_outputs && !covered {
         let text = "no interrupt on $STOPMESS ends the arc when something stops the robot.";
@@ -55,7 +55,7 @@ pub(super) fn program(
     }
 }
 
-/// Follows the outputs through the lines of a program, and checks what its halts and waits leave on.
+/// Follows the outputs through the lines of a program, and checks which of them its halts and waits leave on.
 fn routine(trace: &mut Trace, text: &str, first: usize, before: BTreeSet<u32>, lit_with: &BTreeSet<u32>) {
     let mut on = before;
     for (i, raw) in text.lines().enumerate() {

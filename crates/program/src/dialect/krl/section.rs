@@ -81,7 +81,7 @@ pub struct Krl {
     pub hooks: Hooks,
 }
 
-/// How KRL runs the pieces of a pass.
+/// How KRL executes the pieces of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -98,7 +98,7 @@ fn four() -> f64 {
     4.0
 }
 
-/// How the controller knows the turn table.
+/// How the controller identifies the turn table.
 const TABLE: &str = "It is the index of the turn table in MACHINE_DEF of $config.dat, 2 where it is the first machine besides \
                      the robot: the base must turn with it.";
 
@@ -158,7 +158,7 @@ impl Section for Krl {
     }
 
     fn longest_pass(&self, program: &ProgramSettings) -> Option<usize> {
-        // The longest lines that a move and its speed can have; arcs have two poses.
+        // The longest lines for a move and its speed; arcs have two poses.
         let axes = usize::from(program.linear_axis.is_some()) + program.turning_axes();
         let a_move = if program.arcs { 180 + 44 * axes } else { 102 + 22 * axes };
         Some((self.max_megabytes * MEGABYTE) as usize / a_move)

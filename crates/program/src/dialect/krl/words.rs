@@ -1,4 +1,4 @@
-//! The motions of KRL, and where their targets lie.
+//! The motions of KRL and their targets.
 
 use crate::dialect::reading::trace::Stated;
 use crate::dialect::reading::words::{compact, number};
@@ -41,7 +41,7 @@ impl Motion {
     }
 }
 
-/// Where a motion goes, and what else its target states.
+/// The target of a motion, and what else it states.
 #[derive(Clone, Copy)]
 pub(super) struct Target {
     /// X, Y, Z, mm; `None` for axis angles.
@@ -49,7 +49,7 @@ pub(super) struct Target {
     pub(super) stated: Stated,
 }
 
-/// mm/s of `WITH $VEL.CP=0.1` after a motion.
+/// Speed in mm/s from `WITH $VEL.CP=0.1` after a motion.
 pub(super) fn with_speed(rest: &str) -> Option<f64> {
     let flat = compact(rest.get(rest.find('$')?..)?);
     number_before(flat.strip_prefix("$VEL.CP=")?).map(|v| v * 1000.0)

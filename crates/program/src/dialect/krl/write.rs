@@ -1,4 +1,4 @@
-//! KUKA KRL for KR C4 (KSS 8.x): `NAME.src` calls `NAME_L001.src` and so on, `NAME.dat` holds the home position.
+//! Writes KUKA KRL for KR C4 (KSS 8.x): `NAME.src` calls `NAME_L001.src` and so on; `NAME.dat` holds the home position.
 //!
 //! One module per layer keeps the files small enough for the pendant, and a build can be resumed at any layer. The arc
 //! is switched at exact stops only; points inside a pass are blended with `C_DIS`. With `arc = "arctech"` the inline
@@ -16,7 +16,7 @@ use crate::program::{Attitude, Circle, Instruction, Weave};
 use bead_plan::pass::PassKind;
 use glam::DVec3;
 
-/// Module names may have this many characters.
+/// Most characters of a module name.
 const MAX_NAME: usize = 24;
 
 /// Comments are wrapped at this many characters.
@@ -27,15 +27,15 @@ pub(super) struct KukaKrl {
     frame: Frame,
     krl: Krl,
     weave: Option<Weave>,
-    /// Angles of what turns the part, °.
+    /// Angles of the axes that turn the part, °.
     table: Option<[f64; 2]>,
     /// A, B, C of the torch, °.
     orientation: [f64; 3],
     /// Index of the layer.
     layer: usize,
-    /// Speed set last in the module, mm/s.
+    /// Speed last set in the module, mm/s.
     speed: f64,
-    /// The forms of the module, where ArcTech switches the arc.
+    /// The module's forms, if ArcTech switches the arc.
     forms: Option<Forms>,
 }
 
@@ -60,7 +60,7 @@ impl KukaKrl {
         Chunk::new(format!("{module}.dat"), format!("{head}{declarations}ENDDAT\r\n"))
     }
 
-    /// The part's frame, turned with the table where there is one, and moved by what is written after it.
+    /// The part's frame, turned with the table if there is one, followed by the frame operator `moved`.
     fn base(&self, moved: &str) -> String {
         let data = format!("BASE_DATA[{}]{moved}", self.krl.base);
         match self.krl.table_machine.filter(|_| self.table.is_some()) {
@@ -96,14 +96,14 @@ impl KukaKrl {
     fn with_forms(&mut self, text: &mut String, forms: &mut Forms, all: &[Instruction], i: usize) -> bool {
         let target = |krl: &Self, circle: Option<Circle>, to| (circle.map(|c| krl.aggregate(c.via)), krl.aggregate(to));
         match all[i] {
-            // ARCON itself moves there.
+            // ARCON moves there itself.
             Instruction::Travel { .. } if matches!(all.get(i + 1), Some(Instruction::ArcOn { .. })) => {}
             Instruction::ArcOn { pass, kind } => {
                 self.pass(text, pass, kind);
                 if let Some(to) = i.checked_sub(1).and_then(|before| all[before].target()) {
                     forms.on(text, &self.aggregate(to), self.seam(&all[i..]));
                 }
-                // A form leaves its own speed set.
+                // A form sets a speed of its own.
                 self.speed = 0.0;
             }
             Instruction::Weld { to, circle, last: true, .. } => {
@@ -121,7 +121,7 @@ impl KukaKrl {
                 forms.switch(text, Target { via: via.as_deref(), to: &to }, self.seam(&all[i + 1..]));
                 self.speed = 0.0;
             }
-            // The forms hold the wire feed, and ARCOFF fills the crater.
+            // The forms contain the wire feed, and ARCOFF fills the crater.
             Instruction::WireFeed { .. } | Instruction::Crater { .. } => {}
             Instruction::ArcOff { .. } => self.speed = 0.0,
             _ => return false,
@@ -129,7 +129,7 @@ impl KukaKrl {
         true
     }
 
-    /// What is welded from the beginning of these instructions on; ARCOFF moves at the speed that the last form has set.
+    /// Weld parameters at the beginning of these instructions; ARCOFF moves at the speed set by the last form.
     fn seam(&self, all: &[Instruction]) -> Seam {
         let ends = |i: &Instruction| matches!(i, Instruction::Weld { last: true, .. } | Instruction::WireFeed { .. });
         let until = all.iter().skip(1).position(ends).map_or(all.len(), |at| at + 2);
@@ -198,8 +198,8 @@ impl KukaKrl {
         text.push('}');
     }
 
-    /// The axes at home; those other than the robot's are as in the program, what turns the part at 0, unless the profile says
-    /// otherwise.
+    /// The axes at home; external axes are as in the program, and those that turn the part at 0, unless the profile
+    /// says otherwise.
     fn home(&self) -> String {
         let first = self.frame.program.first_angles();
         let missing = self.external(first).filter(|(number, _)| !self.krl.home.contains(&format!("E{number} ")));
@@ -207,7 +207,7 @@ impl KukaKrl {
         format!("{}{missing}", self.krl.home)
     }
 
-    /// The forms of ArcTech set the base by its number alone, so the controller itself must couple it to the table.
+    /// ArcTech's forms set the base by its number alone, so the controller itself must couple the base to the table.
     fn coupled(&self, text: &mut String) {
         let table = self.krl.table_machine.filter(|_| self.krl.arc == KrlArc::Arctech && self.table.is_some());
         if let Some(machine) = table {
@@ -219,7 +219,7 @@ impl KukaKrl {
         }
     }
 
-    /// The declarations of where to begin, and of the heights to be added to the layers.
+    /// The declarations of the pass at which to begin, and of the heights added to the layers.
     fn variables(&self) -> String {
         let Frame { main, program, layers, .. } = &self.frame;
         let mut text = String::new();
@@ -268,7 +268,7 @@ impl Syntax for KukaKrl {
         text.push_str(";FOLD INI;%{PE}\r\n  GLOBAL INTERRUPT DECL 3 WHEN $STOPMESS==TRUE DO IR_STOPM( )\r\n");
         text.push_str("  INTERRUPT ON 3\r\n  BAS(#INITMOV,0)\r\n;ENDFOLD (INI)\r\n");
         text.push_str(&format!("$TOOL = TOOL_DATA[{}]\r\n$BASE = {}\r\n", krl.tool, self.base("")));
-        // The torch is held in the part's frame, along arcs too.
+        // The torch keeps its orientation in the part's frame, also along arcs.
         text.push_str("$ORI_TYPE = #VAR\r\n$CIRC_TYPE = #BASE\r\n");
         text.push_str(&format!("BAS(#VEL_PTP,{})\r\n", fixed(krl.ptp_speed, 0)));
         text.push_str(&format!("$APO.CDIS = {}\r\n", fixed(krl.blend, 3)));
@@ -287,7 +287,7 @@ impl Syntax for KukaKrl {
         vec![Chunk::new(format!("{}.src", self.frame.main), text)]
     }
 
-    /// The module, and the data of its forms.
+    /// The module and the data of its forms.
     fn part(&mut self, part: &Part, moves: &[Instruction]) -> Vec<Chunk> {
         let (module, layer) = (self.name_of(part), part.layer + 1);
         (self.layer, self.speed, self.forms) = (part.layer, 0.0, self.new_forms());

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub struct Marlin {
     /// File name extension without the dot.
     pub extension: String,
-    /// Whether E starts afresh for every move (M83), which keeps small moves exact; otherwise it counts up over a layer
+    /// Whether E restarts for every move (M83), which keeps small moves exact; otherwise it accumulates over a layer
     /// (M82).
     pub relative_extrusion: bool,
     /// Length of filament drawn back before a travel, mm; 0 for none.
@@ -61,7 +61,7 @@ pub enum BedOrigin {
 }
 
 impl Bed {
-    /// What moves a part to the middle of the bed, mm.
+    /// The shift of a part to the middle of the bed, mm.
     ///
     /// # Errors
     /// [`DialectError::OffBed`].
@@ -108,7 +108,7 @@ impl Section for Marlin {
     }
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
-        // A printer's E sets the feed of every move, but without a move nothing is fed.
+        // A printer's E sets the feed of every move, but nothing can be fed without a move.
         let cannot = |what, remedy| Err(DialectError::Cannot { dialect: "marlin", what, remedy });
         if job.weld.ends.crater_fill_time > 0.0 && !job.dry_run {
             return cannot("a start_stop.crater_fill_time", "Strands have no craters: leave it out.");

@@ -1,4 +1,4 @@
-//! G-code for printers (Marlin, Klipper): E gives the filament, in mm, that every move extrudes.
+//! Writes G-code for printers (Marlin, Klipper): E gives the filament, in mm, extruded in every move.
 //!
 //! Comments name layers, kinds of pass and widths as G-code viewers expect them. Filament is retracted before long
 //! travels.
@@ -14,7 +14,7 @@ use bead_plan::layer::Extent;
 use bead_plan::pass::PassKind;
 use glam::DVec3;
 
-/// Lines stay under Marlin's 96 characters.
+/// Most characters of a comment: lines stay under Marlin's 96.
 const MAX_COMMENT: usize = 80;
 
 /// Decimals of E: a hundredth of a micrometre, so that small moves keep their share.
@@ -28,21 +28,21 @@ pub(super) struct MarlinGcode {
     values: Values,
     width: f64,
     height: f64,
-    /// Filament per second of deposition, mm/s: the metal of the bead at its nominal speed.
+    /// Filament per second of deposition, mm/s: supplies the metal of the bead at its nominal speed.
     filament_speed: f64,
     /// Fraction of `filament_speed` that is used from here on.
     filament_ratio: f64,
-    /// Whether moves lay metal: not in a dry run.
+    /// Whether moves lay metal; false in a dry run.
     lays: bool,
     travel_speed: f64,
     at: Option<DVec3>,
-    /// Filament since the last G92, mm; the sum of what was written.
+    /// Filament since the last G92, mm; the sum of the written values.
     extruded: f64,
     retracted: bool,
-    /// Feed written last, mm/s.
+    /// Feed last written, mm/s.
     feed: f64,
     kind: Option<PassKind>,
-    /// What moves the part to the middle of the bed, mm.
+    /// The shift of the part to the middle of the bed, mm.
     offset: DVec3,
     failure: Option<DialectError>,
 }
@@ -86,7 +86,7 @@ impl MarlinGcode {
         }
     }
 
-    /// A straight move; axes that do not move are left out.
+    /// A straight move; axes that do not move are omitted.
     fn go(&mut self, text: &mut String, word: &str, to: DVec3, filament: Option<f64>, speed: f64) {
         self.motion(text, word, to, None, filament, speed);
     }
@@ -129,7 +129,7 @@ impl MarlinGcode {
         self.at = Some(to);
     }
 
-    /// Adds filament and writes E; what rounding takes from one move, it gives to the next.
+    /// Adds filament and writes E; the rounding error of one move is carried over to the next.
     fn push_e(&mut self, text: &mut String, filament: f64) {
         let step = 10_f64.powi(-(E_DECIMALS as i32));
         let place = |e: f64| (e / step).round() * step;
@@ -148,7 +148,7 @@ impl MarlinGcode {
         text.push('\n');
     }
 
-    /// Retracts the filament, or pushes it forward again.
+    /// Retracts the filament, or pushes it back.
     fn retract(&mut self, text: &mut String, back: bool) {
         if self.marlin.retract_length > 0.0 && self.retracted != back {
             self.retracted = back;
@@ -183,7 +183,7 @@ impl MarlinGcode {
             }
             Instruction::WireFeed { ratio } => self.filament_ratio = ratio,
             Instruction::Weld { to, circle, speed, .. } => self.weld(text, to, circle, speed),
-            // Craters are refused before a printer's program is begun.
+            // Craters are refused before a printer's program begins.
             Instruction::Crater { seconds, .. } | Instruction::Dwell { seconds } => {
                 text.push_str(&format!("G4 P{}\n", fixed(seconds * 1000.0, 0)));
             }
@@ -197,7 +197,7 @@ impl MarlinGcode {
     }
 }
 
-/// The name that G-code viewers know for a kind of pass.
+/// The name by which G-code viewers know a kind of pass.
 fn type_name(kind: PassKind) -> &'static str {
     match kind {
         PassKind::Contour | PassKind::Wall | PassKind::Spot => "External perimeter",
@@ -235,8 +235,8 @@ impl Writer for MarlinGcode {
         Self::comment(&mut text, &format!("Z:{:.3}", program.z));
         Self::comment(&mut text, &format!("HEIGHT:{}", self.height));
         self.lines(&mut text, &self.marlin.layer_start);
-        // E starts from 0 again, as small numbers keep their digits in the printer's 32 bits; but not while filament is
-        // retracted.
+        // E restarts from 0, as small numbers keep their digits in the printer's 32-bit floats; but not while filament
+        // is retracted.
         if !self.marlin.relative_extrusion && !self.retracted {
             self.reset_e(&mut text);
         }

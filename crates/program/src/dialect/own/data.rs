@@ -1,4 +1,4 @@
-//! The data of templates: the job, a layer's steps, and the places and circles in them.
+//! The data of templates: the job, a layer's steps, and the points and circles in them.
 
 use crate::dialect::writing::{Job, PLACEHOLDERS, ascii, upper_name};
 use crate::program::{Circle, Instruction, LayerProgram};
@@ -22,7 +22,7 @@ const CHANGING: [&str; 11] = [
     "wire_feed_ratio",
 ];
 
-/// What is the same throughout a program.
+/// The values that are the same throughout a program.
 pub(super) fn job(job: &Job<'_>) -> Vec<(&'static str, Value)> {
     let number = |text: String| text.parse::<f64>().map_or_else(|_| Value::from(text), Value::from);
     let mut values = vec![
@@ -74,14 +74,14 @@ impl Steps {
     }
 }
 
-/// An instruction, with what follows from those before it.
+/// An instruction, with the state that follows from those before it.
 #[derive(Debug)]
 struct Step {
     instruction: Instruction,
     from: Option<DVec3>,
-    /// mm/s
+    /// Travel speed, mm/s.
     travel_speed: f64,
-    /// m/min
+    /// Wire feed speed, m/min.
     wire_feed_speed: f64,
 }
 
@@ -95,7 +95,7 @@ impl Step {
             Instruction::Crater { .. } => "crater",
             Instruction::ArcOff { .. } => "arc-off",
             Instruction::Dwell { .. } => "dwell",
-            // Templates see what is between them.
+            // Templates see what comes between them.
             Instruction::PassStart { .. } | Instruction::Turn { .. } | Instruction::Above | Instruction::PassEnd => {
                 "pass"
             }
@@ -202,7 +202,7 @@ impl Object for Step {
     }
 }
 
-/// Numbers with names: a place or a circle.
+/// Named numbers: a point or a circle.
 #[derive(Debug)]
 struct Fields<const N: usize>([(&'static str, f64); N]);
 
@@ -218,7 +218,7 @@ impl<const N: usize> Object for Fields<N> {
     }
 }
 
-/// A value that says, as soon as it is used, that there is none with this name.
+/// A value that reports, when used, that there is none with this name.
 fn unknown(owner: &str, key: &str, keys: &[&str]) -> Value {
     let reason = format!("{owner} has no \"{key}\"; it has {}", keys.join(", "));
     Value::from(Error::new(ErrorKind::InvalidOperation, reason))

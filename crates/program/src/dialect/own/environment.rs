@@ -8,15 +8,15 @@ use minijinja::value::ValueKind;
 use minijinja::{AutoEscape, Environment, Error, ErrorKind, Output, State, UndefinedBehavior, Value, escape_formatter};
 use std::collections::BTreeMap;
 
-/// How deep templates may include and call each other.
+/// Deepest nesting of includes and calls in templates.
 const DEPTH: usize = 60;
 
-/// Work that a template may take apart from its steps; about this many operations, or 64 bytes of text each.
+/// Work allowed to a template apart from its steps, in units of about one operation or 64 bytes of text.
 pub(super) const FUEL: u64 = 1_000_000;
-/// Work that it may take for each step.
+/// Work allowed for each step.
 pub(super) const FUEL_PER_STEP: u64 = 10_000;
 
-/// The engine with all templates of a folder: it sees nothing else, and stops whatever does not end.
+/// The engine with all templates of a folder: it has access to nothing else, and stops endless templates.
 pub(super) fn of(settings: &Settings, files: BTreeMap<String, String>) -> Result<Environment<'static>, Error> {
     let mut environment = Environment::new();
     // Tags on lines of their own leave no empty lines.
@@ -47,8 +47,8 @@ fn fixed(value: f64, decimals: usize) -> Result<String, Error> {
     Err(Error::new(ErrorKind::InvalidOperation, format!("{value} cannot be written with {decimals} decimals")))
 }
 
-/// Prints text and whole numbers. For a number with decimals, their count must be given, since no default would fit every
-/// controller.
+/// Prints text and whole numbers. A number with decimals needs an explicit number of decimals, since no default would
+/// suit every controller.
 fn print(out: &mut Output, state: &mut State, value: &Value) -> Result<(), Error> {
     let problem = match value.kind() {
         // An invalid value carries its own explanation.
@@ -64,7 +64,7 @@ fn print(out: &mut Output, state: &mut State, value: &Value) -> Result<(), Error
     }
 }
 
-/// What the engine found, as a sentence with a remedy.
+/// An error of the engine, as a sentence with a remedy.
 pub(super) fn sentence(fault: &Error) -> String {
     let detail = fault.detail().unwrap_or_default().trim_end_matches('.');
     match fault.kind() {

@@ -28,12 +28,12 @@ use write::OwnWriter;
 const BEGIN: &str = "begin.txt";
 const LAYER: &str = "layer.txt";
 const END: &str = "end.txt";
-/// The file of settings, and the names of the two templates in it.
+/// The settings file, and the names of the two templates in it.
 const SETTINGS: &str = "dialect.toml";
 const FILE: &str = "dialect.toml, file";
 const LAYER_FILE: &str = "dialect.toml, layer_file";
 
-/// A user's own dialect.
+/// A user-defined dialect.
 #[derive(Debug, Clone)]
 pub struct Own {
     folder: String,
@@ -41,13 +41,13 @@ pub struct Own {
     environment: Environment<'static>,
 }
 
-/// What is wrong with a user's own dialect.
+/// What is wrong with a user-defined dialect.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{folder}, {file}{at}: {reason}", at = line.map_or(String::new(), |line| format!(", line {line}")))]
 pub struct OwnError {
-    /// The folder, as the user calls it.
+    /// The folder, as named by the user.
     pub folder: String,
-    /// The file in it.
+    /// The file in that folder.
     pub file: String,
     /// Line number in the file, from 1.
     pub line: Option<usize>,
@@ -79,7 +79,7 @@ impl Own {
         Ok(Self { folder: folder.to_owned(), settings, environment })
     }
 
-    /// The folder, as the user calls it.
+    /// The folder, as named by the user.
     pub fn name(&self) -> &str {
         &self.folder
     }
@@ -104,10 +104,10 @@ pub fn is_folder(post: &str) -> bool {
     post.contains(['/', '\\'])
 }
 
-/// A fault of the template engine as an error with a place.
+/// An error of the template engine with its location.
 fn explained(folder: &str, fault: &minijinja::Error) -> OwnError {
     let file = fault.name().unwrap_or(SETTINGS).to_owned();
-    // The templates in the settings have lines of their own.
+    // The templates in the settings have line numbers of their own.
     let line = fault.line().filter(|_| !file.starts_with(SETTINGS));
     OwnError { folder: folder.to_owned(), file, line, reason: environment::sentence(fault) }
 }

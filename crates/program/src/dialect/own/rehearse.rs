@@ -1,5 +1,5 @@
-//! Rehearses a user's own dialect before anything is written: with a small program that has every kind of step, and
-//! by asking, for all that the job needs, whether the text changes with it.
+//! Rehearses a user-defined dialect before anything is written: with a small program that has every kind of step, and
+//! by checking, for everything that the job needs, that the text changes with it.
 
 use super::write::OwnWriter;
 use super::{BEGIN, END, FILE, LAYER, LAYER_FILE, Own, OwnError, SETTINGS, data};
@@ -45,7 +45,7 @@ pub(super) fn rehearse(own: &Own, job: &Job<'_>) -> Result<(), DialectError> {
     Ok(())
 }
 
-/// Runs the templates on layers; the text of all files.
+/// Runs the templates on layers; returns the text of all files.
 fn run(own: &Own, job: &Job<'_>, layers: &[Vec<Instruction>]) -> Result<String, DialectError> {
     let mut writer = OwnWriter::new(own, job);
     let mut chunks = writer.begin(&Extent { layers: layers.len(), ..Extent::default() });
@@ -60,7 +60,7 @@ fn run(own: &Own, job: &Job<'_>, layers: &[Vec<Instruction>]) -> Result<String, 
     }
 }
 
-/// Refuses names that no template knows, even where the rehearsal does not reach.
+/// Refuses names that no template knows, even in places that the rehearsal does not reach.
 fn names(own: &Own, job: &Job<'_>) -> Result<(), OwnError> {
     let writer = OwnWriter::new(own, job);
     let environment = writer.environment();
@@ -114,7 +114,7 @@ fn quarter(left: bool) -> Circle {
 
 const END_OF_QUARTER: DVec3 = DVec3::new(15.0, 25.0, 2.0);
 
-/// A pass from [`START`] with something in it.
+/// A pass from [`START`] that contains the given instructions.
 fn pass(inside: impl IntoIterator<Item = Instruction>) -> Vec<Instruction> {
     let head = [
         Instruction::Approach { to: START + 5.0 * DVec3::Z },

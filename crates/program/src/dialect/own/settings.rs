@@ -1,22 +1,22 @@
-//! The settings of a user's own dialect: its `dialect.toml`.
+//! The settings of a user-defined dialect: its `dialect.toml`.
 
 use serde::Deserialize;
 
-/// What a folder says about the files to be written; names of files are templates.
+/// The settings of the files to be written; file names are templates.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Settings {
-    /// Name of the file of `begin.txt` and `end.txt`, and of the layers too if `layer_file` is left out.
+    /// Name of the file of `begin.txt` and `end.txt`, and of the layers too if `layer_file` is omitted.
     pub(super) file: String,
     /// Name of the file of each layer.
     pub(super) layer_file: Option<String>,
     /// How lines end.
     #[serde(default)]
     pub(super) line_ends: LineEnds,
-    /// By how much `block()` counts up.
+    /// Increment of `block()`.
     #[serde(default = "step")]
     pub(super) block_step: usize,
-    /// After this number `block()` starts again.
+    /// Number after which `block()` restarts.
     #[serde(default = "most")]
     pub(super) block_most: usize,
 }

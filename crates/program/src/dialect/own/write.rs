@@ -1,4 +1,4 @@
-//! Writes programs from the templates of a user's own dialect, a layer at a time.
+//! Writes programs from the templates of a user-defined dialect, a layer at a time.
 
 use super::data::Steps;
 use super::environment::{FUEL, FUEL_PER_STEP};
@@ -20,12 +20,12 @@ pub(super) struct OwnWriter {
     folder: String,
     settings: Settings,
     environment: Environment<'static>,
-    /// The number that `block()` gave last.
+    /// The last number returned by `block()`.
     block: Arc<AtomicUsize>,
     steps: Steps,
     /// The names of the layers' files.
     layer_files: Vec<String>,
-    /// All names of files, in lower case: Windows treats names that differ only in case as the same.
+    /// All file names in lower case: Windows treats names that differ only in case as the same.
     taken: BTreeSet<String>,
     failure: Option<OwnError>,
 }
@@ -48,7 +48,7 @@ impl OwnWriter {
         Self { folder, settings, environment, block, steps, layer_files, taken, failure: None }
     }
 
-    /// The templates, and the names that all of them know.
+    /// The templates, and the names available in all of them.
     pub(super) fn environment(&self) -> &Environment<'static> {
         &self.environment
     }
@@ -75,7 +75,7 @@ impl OwnWriter {
         OwnError { folder: self.folder.clone(), file: file.to_owned(), line: None, reason }
     }
 
-    /// The name of a file: one that stays in the folder of the plan, and is not one of the plan's own files.
+    /// The name of a file, checked to stay in the folder of the plan and not to be one of the plan's own files.
     fn file(&mut self, template: &str, data: Value) -> Result<String, OwnError> {
         let name = self.render(template, 0, data)?;
         let plain = |c: char| c.is_ascii_alphanumeric() || "_-+. ".contains(c);
@@ -96,7 +96,7 @@ impl OwnWriter {
     /// A part of the program in the main file.
     fn main(&mut self, template: &str, data: Value) -> Result<Vec<Chunk>, OwnError> {
         let file = self.file(FILE, context! {})?;
-        // A folder without this template writes nothing there.
+        // A folder without this template writes nothing here.
         let text = match self.environment.get_template(template) {
             Ok(_) => self.text(template, 0, data)?,
             Err(_) => String::new(),
@@ -129,7 +129,7 @@ impl OwnWriter {
         let steps = self.steps.layer(program);
         let count = steps.len();
         let data = context! { layer => number, z => program.z, steps => steps, file => &file };
-        // A file of its own has numbers of its own.
+        // A separate file has its own block numbers.
         let of_main = self.block.load(Relaxed);
         if self.settings.layer_file.is_some() {
             self.block.store(0, Relaxed);
@@ -141,7 +141,7 @@ impl OwnWriter {
         Ok(vec![Chunk { file, text }])
     }
 
-    /// Notes an error; after one nothing more is written.
+    /// Records an error; nothing more is written after one.
     fn keep(&mut self, written: Result<Vec<Chunk>, OwnError>) -> Vec<Chunk> {
         written.unwrap_or_else(|error| {
             self.failure = Some(error);
@@ -150,7 +150,7 @@ impl OwnWriter {
     }
 }
 
-/// The error inside an included template or a macro, which has the right place.
+/// The error inside an included template or a macro, which has the right location.
 fn innermost(fault: &Error) -> &Error {
     let source = std::error::Error::source(fault).and_then(|source| source.downcast_ref::<Error>());
     source.filter(|source| source.name().is_some()).map_or(fault, innermost)

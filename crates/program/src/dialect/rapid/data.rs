@@ -6,7 +6,7 @@ use crate::program::{ProgramSettings, Weave};
 use bead_plan::process::Process;
 use glam::DVec3;
 
-/// The external axes of a target: a linear axis (mm), and those that turn the part (°) in their places, as far as there are any.
+/// The external axes of a target: a linear axis (mm), and those that turn the part (°), in their positions.
 pub(super) fn external_axes(program: &ProgramSettings, turned: Option<[f64; 2]>, rapid: &Rapid) -> String {
     let mut axes = [const { None }; 6];
     axes[0] = program.linear_axis;
@@ -31,7 +31,7 @@ pub(super) fn quaternion(q: &[f64]) -> String {
     list(&unit, 7)
 }
 
-/// A frame: place and quaternion.
+/// A frame: position and quaternion.
 fn pose(frame: &[f64; 7]) -> String {
     format!("[{},{}]", list(&frame[..3], 3), quaternion(&frame[3..]))
 }
@@ -101,21 +101,21 @@ fn seam(process: &Process, rapid: &Rapid) -> String {
 }
 
 /// Welddata for a deposition speed, mm/s, and the fraction `feed` of the wire feed. The tuning values are 0, as in
-/// ABB's examples. `process` is that of the layer; a job of its own takes the place of the schedule.
+/// ABB's examples. `process` is that of the layer; if it has its own job, that replaces the schedule.
 pub(super) fn weld(speed: f64, feed: f64, process: &Process, nominal: &Process, rapid: &Rapid) -> String {
     let schedule = if process.job == nominal.job { rapid.schedule } else { process.job };
     format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed, schedule))
 }
 
-/// Weavedata for a speed, mm/s: a zigzag with all axes, whose length is a distance along the seam at any speed. RobotWare counts
-/// its width from side to side, and its dwell there as a distance too, mm.
+/// Weavedata for a speed, mm/s: a zigzag with all axes, whose length is a distance along the seam at any speed.
+/// RobotWare measures its width from side to side, and its dwell there also as a distance, mm.
 pub(super) fn weave(weave: &Weave, speed: f64) -> String {
     let [length, width, dwell] = [weave.length, 2.0 * weave.amplitude, weave.dwell * speed].map(|v| fixed(v, 3));
     format!("[1,0,{length},{width},0,{dwell},0,{dwell},0,0,0,0,0,0,0]")
 }
 
-/// The data of the main module: tool, part, home with its external `axes`, speeds, zone and seam, one declaration each. A
-/// part on a turn table has its frame on the unit, whose own frame the controller knows.
+/// The data of the main module: tool, part, home with its external `axes`, speeds, zone and seam, one declaration each.
+/// A part on a turn table has its frame on the unit, whose own frame the controller knows.
 pub(super) fn declarations(
     process: &Process,
     travel_speed: f64,

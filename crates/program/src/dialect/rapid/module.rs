@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// Lines that are statements although no `;` ends them.
+/// Lines that are statements although they do not end with `;`.
 const LINES: [&str; 21] = [
     "MODULE",
     "ENDMODULE",
@@ -31,7 +31,7 @@ const LINES: [&str; 21] = [
     "BACKWARD",
 ];
 
-/// Data kinds whose values matter.
+/// Data types whose values matter.
 const KINDS: [&str; 8] =
     ["ROBTARGET", "SPEEDDATA", "WELDDATA", "SEAMDATA", "NUM", "WOBJDATA", "JOINTTARGET", "WEAVEDATA"];
 
@@ -44,21 +44,21 @@ pub(super) enum Value {
     Joints([Option<f64>; 6]),
     /// Whether a work object moves with a mechanical unit.
     WorkObject(bool),
-    /// Length, and dwell at the left side, of a weave, mm; the length is a frequency for some types.
+    /// Length of a weave, and dwell at its left side, mm; for some types the length is a frequency.
     Weave([f64; 2]),
     /// Speed, mm/s, or a plain number.
     Speed(f64),
-    /// Times for which the torch stands still at the start and at the end of a seam, s.
+    /// Times that the torch stands still at the start and at the end of a seam, s.
     Seam([f64; 2]),
 }
 
 /// A robtarget.
 #[derive(Clone, Copy)]
 pub(super) struct Target {
-    /// mm
+    /// Position, mm.
     pub(super) at: DVec3,
     pub(super) stated: Stated,
-    /// Whether its configuration is all 0, as it is where it is not known.
+    /// Whether its configuration is all 0, as when it is unknown.
     pub(super) unconfigured: bool,
 }
 
@@ -68,9 +68,9 @@ pub(super) struct Module {
     pub(super) name: Option<String>,
     /// The text with blanks in place of comments.
     pub(super) text: String,
-    /// Range in the text and line, from 1.
+    /// Text range and line (from 1) of each statement.
     statements: Vec<(Range<usize>, usize)>,
-    /// Name in upper case and statements.
+    /// Name in upper case and statements of each procedure.
     procs: Vec<(String, Range<usize>)>,
     data: HashMap<String, Value>,
 }
@@ -96,7 +96,7 @@ impl Module {
         self.statements[self.procs[proc].1.clone()].iter().map(|(range, line)| (&self.text[range.clone()], *line))
     }
 
-    /// Line, kind, name and value of all data that matter, also those within procedures.
+    /// Line, type, name and value of all data that matter, including those within procedures.
     pub(super) fn declarations(&self) -> Vec<(usize, &'static str, String, String)> {
         let declaration = |(range, line): &(Range<usize>, usize)| {
             let (left, value) = self.text[range.clone()].split_once(":=")?;
@@ -143,7 +143,7 @@ fn without_comments(text: &str) -> String {
     String::from_utf8_lossy(&text.bytes().map(blank).collect::<Vec<u8>>()).into_owned()
 }
 
-/// Cuts at `;` outside quotes, and at the end of lines that begin or end a block.
+/// Splits at `;` outside quotes, and at the end of lines that begin or end a block.
 fn statements(text: &str) -> Vec<(Range<usize>, usize)> {
     let mut found = Vec::new();
     let (mut line, mut start, mut quoted) = (1, None, false);
@@ -210,23 +210,23 @@ pub(super) fn first_number(text: &str) -> Option<f64> {
     number(text.trim_start().trim_start_matches('[').split([',', ']']).next()?)
 }
 
-/// The times for which the torch stands still at the start (gas, ignition) and at the end of a seam (crater, burn-back, wire
-/// drawn back, gas), s; `None` where the seamdata have components other than those of RobotWare Arc 6.
+/// The times that the torch stands still at the start (gas, ignition) and at the end of a seam (crater, burnback, wire
+/// retraction, gas), s; `None` if the seamdata do not have the components of RobotWare Arc 6.
 pub(super) fn seam_times(text: &str) -> Option<[f64; 2]> {
     const PARTS: usize = 48;
     let numbers = text.split([',', '[', ']']).filter(|part| !part.trim().is_empty()).map(number);
     let parts: Vec<f64> = numbers.collect::<Option<_>>()?;
     let sum = |places: &[usize]| places.iter().map(|&i| parts[i].max(0.0)).sum();
-    // Preflow and delay of the move; filling, burn-back, roll-back and postflow. Nine parts each are arcdata.
+    // Preflow and delay of the move; filling, burnback, rollback and postflow. Each arcdata has nine components.
     (parts.len() == PARTS).then(|| [sum(&[1, 11]), sum(&[26, 36, 37, 47])])
 }
 
-/// A value of 9E9 or more is an axis that does not exist.
+/// A value of 9E9 or more stands for an axis that does not exist.
 fn axis(value: f64) -> Option<f64> {
     (value < 9e8).then_some(value)
 }
 
-/// A robtarget as a literal, or the text that is not a number; what follows its place may be left out.
+/// A robtarget as a literal, or the text that is not a number; anything after its position may be omitted.
 pub(super) fn target(text: &str) -> Result<Target, &str> {
     let at = DVec3::from_array(three_numbers(text)?);
     let numbers: Vec<f64> = text.split([',', '[', ']']).filter_map(number).collect();
@@ -247,14 +247,14 @@ pub(super) fn external_axes(text: &str) -> Option<[Option<f64>; 6]> {
     Some(std::array::from_fn(|i| axis(axes[i])))
 }
 
-/// Whether a work object as a literal moves with a mechanical unit: its user frame is not fixed.
+/// Whether a work object, as a literal, moves with a mechanical unit: its user frame is not fixed.
 pub(super) fn moves_with_unit(text: &str) -> Option<bool> {
     let mut fields = text.trim_start().strip_prefix('[')?.split(',').map(str::trim);
     let (_, fixed) = (fields.next()?, fields.next()?);
     Some(fixed.eq_ignore_ascii_case("FALSE"))
 }
 
-/// Length, and dwell at the left side, of weavedata as a literal.
+/// Length, and dwell at the left side, of weavedata as a literal, mm.
 pub(super) fn weave(text: &str) -> Option<[f64; 2]> {
     let numbers: Vec<f64> = text.split([',', '[', ']']).filter_map(number).collect();
     Some([*numbers.get(2)?, *numbers.get(5)?])

@@ -1,7 +1,7 @@
 //! Names in RAPID: at most 32 letters, digits and `_`, beginning with a letter, the same in upper and lower case, and
 //! not used by the language or the system.
 
-/// Identifiers may have this many characters.
+/// Most characters of an identifier.
 pub(crate) const MAX_NAME: usize = 32;
 
 /// Longest folder: with a slash, a module's name and `.mod` it must fit into a string of 80 characters.
@@ -10,7 +10,7 @@ pub(crate) const MAX_FOLDER: usize = 40;
 /// Data that the post declares; welddata are `wd1`, `wd2`, …, weavedata `wv1`, …, speeddata of the plain variant `vd1`, ….
 pub(crate) const OWN: [&str; 8] = ["jHome", "vHome", "vTravel", "zBead", "smBead", "nStart", "nDz", "main"];
 
-/// Words of the language, and system data and types that a part might happen to be named after.
+/// Words of the language, and system data and types after which a part might happen to be named.
 const RESERVED: &str = "\
     ALIAS AND BACKWARD CASE CONNECT CONST DEFAULT DIV DO ELSE ELSEIF ENDFOR ENDFUNC ENDIF ENDMODULE ENDPROC \
     ENDRECORD ENDTEST ENDTRAP ENDWHILE ERROR EXIT FALSE FOR FROM FUNC GOTO IF INOUT LOCAL MOD MODULE NOSTEPIN \
@@ -34,7 +34,7 @@ fn is_reserved(name: &str) -> bool {
     RESERVED.split(' ').any(|word| word == upper) || NUMBERED.split(' ').any(numbered)
 }
 
-/// The module name for a part, with room for `_L` and `digits`; `taken` are the cell's own names.
+/// The module name for a part, leaving space for `_L` and `digits`; `taken` are the cell's own names.
 pub(super) fn module_name(part: &str, digits: usize, taken: [&str; 2]) -> String {
     let mut name: String = part.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let taken = OWN.into_iter().chain(taken).any(|own| own.eq_ignore_ascii_case(&name));

@@ -1,7 +1,8 @@
-//! ABB RAPID: motions to robtargets, written out or declared, and the procedures that a program calls.
+//! Reads ABB RAPID: motions to robtargets, written out or declared, and the procedures that a program calls.
 //!
-//! Positions are in the work object. The arc is struck by `ArcLStart` and ended by `ArcLEnd` or `ArcCEnd`, or by the codes
-//! in the options. A weld instruction lays metal at the speed of its welddata; the times in seamdata count as waits.
+//! Positions are in the work object. The arc is struck by `ArcLStart` and ended by `ArcLEnd` or `ArcCEnd`, or by the
+//! codes in the options. A weld instruction lays metal at the speed of its welddata; the times in seamdata count as
+//! waits.
 
 use super::module::{Module, Target, Value};
 use super::{module, review};
@@ -88,7 +89,7 @@ const WAITING: [&str; 7] = ["TPWrite", "ErrWrite", "Stop", "EXIT", "WaitTime", "
 /// Where handlers begin: they run only on errors.
 const HANDLERS: [&str; 3] = ["ERROR", "UNDO", "BACKWARD"];
 
-/// How an instruction moves.
+/// The effect of a motion on the arc.
 #[derive(Clone, Copy, PartialEq)]
 enum Weld {
     /// Lays metal if the arc is on.
@@ -118,7 +119,7 @@ const MOTIONS: [(&str, bool, Weld); 10] = [
 /// Whether a line can occur only in RAPID.
 pub(super) fn typical(line: &str) -> bool {
     const FIRST: [&str; 9] = ["MODULE", "PROC", "MoveL", "MoveJ", "MoveC", "MoveAbsJ", "ArcLStart", "PERS", "CONST"];
-    // In URScript a bracket follows the word.
+    // In URScript the word is followed by a bracket.
     let called = line.trim_start_matches(|c: char| c.is_ascii_alphanumeric()).starts_with('(');
     begins_with(unscoped(line), &FIRST) && !called
 }
@@ -159,11 +160,11 @@ struct Reader<'a> {
     off: Patterns,
     /// Numbers of variables that were assigned, in upper case.
     values: HashMap<String, f64>,
-    /// Flags that waits set when they time out, in upper case.
+    /// Flags set by waits that time out, in upper case.
     in_time: HashSet<String>,
-    /// Whether the robot enforces the configurations of joint moves, and monitors those of others.
+    /// Whether the robot enforces configurations in joint moves, and monitors them in others.
     configured: [bool; 2],
-    /// Interrupts on an input that goes off, in upper case, and whether they are active.
+    /// Interrupts on an input going off, in upper case, and whether they are active.
     interrupts: HashMap<String, bool>,
     /// Whether RobotWare Arc strikes the arc.
     package: bool,
@@ -173,7 +174,7 @@ struct Reader<'a> {
     lit_with: BTreeSet<String>,
     /// Outputs that are on, in upper case.
     outputs: BTreeSet<String>,
-    /// For the length of each weave, the least and greatest time that the torch dwells at a side, s.
+    /// For the length of each weave, the least and greatest dwell at a side, s.
     weaves: HashMap<String, [f64; 2]>,
 }
 
@@ -224,7 +225,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// A statement, and what comes after it.
+    /// Reads a statement; returns what comes after it.
     fn line(&mut self, body: &[(&str, usize)], i: usize, module: &Rc<Module>, depth: usize) -> Result<Next, ReadError> {
         let (text, line) = body[i];
         match mark(text) {
@@ -261,8 +262,8 @@ impl Reader<'_> {
         holds(&condition, value)
     }
 
-    /// Whether a loop continues whose condition tests flags of waits that may time out, and outputs: while all is well none
-    /// does, and outputs are as they were set.
+    /// Whether a loop continues whose condition tests time-out flags of waits, and outputs: in normal operation no wait
+    /// times out, and outputs are as they were set.
     fn goes_on(&self, condition: &str) -> Option<bool> {
         truth(without_end(condition, "DO"), &|part| {
             let flat = compact(part);
@@ -314,7 +315,7 @@ impl Reader<'_> {
             let file = module::stem(text).unwrap_or_default();
             self.modules.retain(|m| !m.name.as_deref().is_some_and(|n| n.eq_ignore_ascii_case(file)));
         } else if is("IF") && flat.to_ascii_uppercase().contains("ERASEMODULE") {
-            // Clears what a stop may have left; a program read from its beginning finds nothing.
+            // Clears what a stop may have left; a program read from its beginning has nothing to clear.
         } else if CONTROL.iter().any(|c| is(c)) {
             return self.control(text, line, module, depth);
         } else {
@@ -323,7 +324,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// What a statement means for the watch over the arc, and for how the robot moves.
+    /// Evaluates a statement for arc monitoring and for how the robot moves.
     fn watched(&mut self, word: &str, rest: &str, flat: &str, line: usize) {
         let is = |name: &str| name.eq_ignore_ascii_case(word);
         let first = || arguments(rest).first().copied().unwrap_or_default().to_ascii_uppercase();
@@ -332,7 +333,7 @@ impl Reader<'_> {
         } else if is("TriggStopProc") {
             self.stops = true;
         } else if is("ISignalDI") {
-            // An interrupt on a signal that goes off.
+            // An interrupt on a signal going off.
             let parts = arguments(rest);
             if let [_, value, interrupt] = parts[parts.len().saturating_sub(3)..]
                 && value == "0"
@@ -383,7 +384,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Assignments, calls, and what is left.
+    /// Handles assignments, calls, and the remaining statements.
     fn other(
         &mut self,
         text: &str,
@@ -433,7 +434,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// Whether the heights that the main module adds to layers are all 0.
+    /// Whether the main module's heights added to layers are all 0.
     fn offsets_are_zero(&self) -> bool {
         let zero = |module: &Rc<Module>| module.zeros("nDz");
         self.modules.first().is_some_and(zero)
@@ -461,7 +462,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// The procedure in the module itself or in the last module loaded that has it.
+    /// The procedure in the module itself, or in the most recently loaded module that has it.
     fn find(&self, called: &str, module: &Rc<Module>) -> Option<(Rc<Module>, usize)> {
         let all = std::iter::once(module).chain(self.modules.iter().rev());
         all.into_iter().find_map(|m| m.proc(called).map(|p| (Rc::clone(m), p)))
@@ -545,7 +546,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    /// What a motion states besides its place, before it is made.
+    /// Evaluates what a motion states besides its position, before it is made.
     fn before_motion(&mut self, target: &Target, joint: bool, rest: &str, module: &Module, line: usize) {
         let wobj = rest.split_once("\\WObj:=").map(|(_, wobj)| name(wobj).0);
         if let Some(Value::WorkObject(moves)) = wobj.and_then(|wobj| self.value(wobj, module)) {
@@ -570,7 +571,7 @@ impl Reader<'_> {
         self.trace.stand(&target.stated, target.at, "a target", line);
     }
 
-    /// The time for which a weave dwells at a side follows from its distance and the speed.
+    /// The dwell time of a weave at a side follows from its distance and the speed.
     fn weaving(&mut self, rest: &str, speed: f64, module: &Module, line: usize) {
         let weave = rest.split_once("\\Weave:=").map(|(_, weave)| name(weave).0);
         let Some(Value::Weave([length, stay])) = weave.and_then(|weave| self.value(weave, module)) else { return };
@@ -590,7 +591,7 @@ impl Reader<'_> {
         }
     }
 
-    /// mm/s of a speeddata or welddata: predefined, named, or written out; `\V:=` overrides it.
+    /// Speed in mm/s of a speeddata or welddata: predefined, named, or written out; `\V:=` overrides it.
     fn speed(&self, text: &str, options: &str, module: &Module) -> Option<f64> {
         if let Some((_, v)) = options.split_once("\\V:=") {
             return number(v.split([',', '\\']).next()?);
@@ -609,7 +610,7 @@ impl Reader<'_> {
         module.get(variable).or_else(|| self.modules.iter().rev().find_map(|m| m.get(variable)))
     }
 
-    /// `[[x,y,z],..]`, a name, or `Offs(place,x,y,z)`; none when it is something else.
+    /// `[[x,y,z],..]`, a name, or `Offs(place,x,y,z)`; `None` if it is something else.
     fn target(&self, text: &str, module: &Module, line: usize) -> Result<Option<Target>, ReadError> {
         if text.starts_with('[') {
             let target = module::target(text).map_err(|bad| self.trace.number_error(line, bad))?;

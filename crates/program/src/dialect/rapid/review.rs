@@ -1,4 +1,4 @@
-//! What a welding programmer sees in a RAPID program without running it: stops and waits in the routines of the watch, and
+//! What a welding programmer notices in a RAPID program without running it: stops and waits in monitoring routines, and
 //! stops that leave outputs on.
 
 use super::module::Module;
@@ -8,7 +8,7 @@ use crate::dialect::reading::trace::Trace;
 use crate::dialect::reading::words::{compact, name, strip_word};
 use std::collections::BTreeSet;
 
-/// Looks through the main module; `lit_with` are the outputs that are on while the arc burns.
+/// Reviews the main module; `lit_with` are the outputs that are on while the arc burns.
 pub(super) fn program(trace: &mut Trace, main: &Module, stops: bool, lit_with: &BTreeSet<String>) {
     if !trace.watch.by_outputs {
         return;

@@ -165,7 +165,7 @@ pub struct RapidSeam {
     pub rollback_time: f64,
 }
 
-/// How the controller knows the turn table.
+/// How the controller identifies the turn table.
 const TABLE: &str =
     "It is the name of the turn table's mechanical unit, such as \"STN1\": the work object must turn with it.";
 

@@ -1,5 +1,5 @@
-//! ABB RAPID for IRC5 (RobotWare 6): `NAME.mod` holds the cell's data and `main`, `NAME_L001.mod` and so on hold one
-//! layer each, and `NAME.pgf` lists the modules to be loaded.
+//! Writes ABB RAPID for IRC5 (RobotWare 6): `NAME.mod` holds the cell's data and `main`, `NAME_L001.mod` and so on hold
+//! one layer each, and `NAME.pgf` lists the modules to be loaded.
 //!
 //! With RobotWare Arc a pass is `ArcLStart … fine`, `ArcL … zBead`, `ArcLEnd … fine`; without it, plain `MoveL` between
 //! lines that the profile gives. While welding, the welddata set the speed: speeds are rounded to the nominal one plus
@@ -19,10 +19,10 @@ use glam::DVec3;
 /// Comments are wrapped at this many characters.
 const MAX_COMMENT: usize = 76;
 
-/// Where to begin.
+/// The variable that holds the pass at which to begin.
 const START: &str = "nStart";
 
-/// Words with which subprograms begin.
+/// Keywords that begin subprograms.
 const ROUTINES: [&str; 5] = ["PROC ", "TRAP ", "FUNC ", "LOCAL PROC ", "LOCAL TRAP "];
 
 /// Writes RAPID.
@@ -72,7 +72,8 @@ impl AbbRapid {
         self.rapid.table_unit.as_deref().filter(|_| self.frame.program.has_table())
     }
 
-    /// Activates the units that move along, and refuses a work object of the controller that does not turn with the table.
+    /// Activates the units that move along, and refuses a work object of the controller's that does not turn with the
+    /// table.
     fn units(&self, text: &mut String) {
         let track = self.rapid.track_unit.as_deref().filter(|_| self.frame.program.linear_axis.is_some());
         track.into_iter().chain(self.table()).for_each(|unit| statement(text, &format!("ActUnit {unit};")));
@@ -88,7 +89,7 @@ impl AbbRapid {
         }
     }
 
-    /// The speed as it is written, thousandths of a mm/s: the nominal one plus or minus whole steps.
+    /// The speed as written, in thousandths of a mm/s: the nominal speed plus or minus whole steps.
     fn rounded(&self, speed: f64) -> u64 {
         let (nominal, step) = (self.frame.process.deposition_speed, self.rapid.speed_step);
         let near = nominal + ((speed - nominal) / step).round() * step;
@@ -96,7 +97,7 @@ impl AbbRapid {
         (written * 1000.0).round().max(1.0) as u64
     }
 
-    /// The data for a speed and the fraction `feed` of the nominal wire feed; plain moves set no wire feed.
+    /// The data for a speed and the fraction `feed` of the nominal wire feed; plain moves do not set the wire feed.
     fn datum(&self, speed: f64, feed: f64) -> Datum {
         let pace = self.frame.process.deposition_speed / feed;
         (self.rounded(speed), (self.with_arc() && feed != 1.0).then(|| self.rounded(pace)))
@@ -138,7 +139,7 @@ impl AbbRapid {
         }
     }
 
-    /// Number of the data for a speed with the wire feed as it is, from 1.
+    /// Number of the data for a speed at the current wire feed, from 1.
     fn number(&self, speed: f64) -> usize {
         let wanted = self.datum(speed, self.frame.feed);
         self.speeds.iter().position(|&s| s == wanted).map_or(1, |i| i + 1)
@@ -175,7 +176,7 @@ impl AbbRapid {
         }
     }
 
-    /// The data of a move with the arc on: the welddata with this number, and the weavedata where the torch swings.
+    /// The data of a move with the arc on: the welddata with this number, and the weavedata if the torch weaves.
     fn arc_data(&self, number: usize) -> String {
         let weave = self.weave.as_ref().map(|_| format!("\\Weave:=wv{number}"));
         format!("vTravel,smBead,wd{number}{}", weave.unwrap_or_default())
@@ -187,7 +188,7 @@ impl AbbRapid {
         let file = format!("{}/{module}.mod", self.rapid.folder);
         let load = self.rapid.modules == RapidModules::Load;
         if load {
-            // After a stop the module may still be there, and Load would refuse (ERR_LOADED).
+            // The module may still be loaded after a stop, and Load would refuse it (ERR_LOADED).
             statement(&mut text, &format!("IF ModExist(\"{module}\") EraseModule \"{module}\";"));
             statement(&mut text, &format!("Load \\Dynamic,\"{file}\";"));
         }
@@ -200,7 +201,7 @@ impl AbbRapid {
 }
 
 impl AbbRapid {
-    /// The data that the profile's subprograms declare, which RAPID requires before all routines, and the subprograms.
+    /// The data declared by the profile's subprograms, which RAPID requires before all routines, and the subprograms.
     fn behind_main(&self) -> (Vec<String>, Vec<String>) {
         let (mut data, mut routines) = (Vec::new(), Vec::new());
         let Frame { lines, values, .. } = &self.frame;
@@ -258,11 +259,11 @@ impl Syntax for AbbRapid {
         self.frame.supplies.iter().for_each(|line| text.push_str(&format!("  ! {line}\r\n")));
         self.declarations(&mut text);
         text.push_str("  PROC main()\r\n");
-        // The robot chooses the posture nearest to the one that it has: configurations are unknown here.
+        // The robot chooses the posture nearest to its current one: configurations are unknown here.
         statement(&mut text, "ConfL \\Off;");
         statement(&mut text, "ConfJ \\Off;");
         statement(&mut text, "SingArea \\Wrist;");
-        // The torch is held in the part's frame, along arcs too.
+        // The torch keeps its orientation in the part's frame, also along arcs.
         statement(&mut text, "CirPathMode \\ObjectFrame;");
         self.units(&mut text);
         self.home(&mut text);
@@ -341,13 +342,13 @@ impl Syntax for AbbRapid {
         }
     }
 
-    /// RobotWare Arc: its instructions strike and end the arc, its data hold the wire feed and fill craters.
+    /// RobotWare Arc: its instructions strike and end the arc; its data set the wire feed and fill craters.
     fn by_package(&mut self, text: &mut String, moves: &[Instruction], at: usize) -> bool {
         if !self.with_arc() {
             return false;
         }
         match moves[at] {
-            // ArcLStart itself moves there.
+            // ArcLStart moves there itself.
             Instruction::Travel { .. } if matches!(moves.get(at + 1), Some(Instruction::ArcOn { .. })) => {}
             Instruction::ArcOn { pass, kind } => {
                 self.pass(text, pass, kind);
@@ -401,7 +402,7 @@ fn routine(part: &Part) -> String {
     format!("Layer{}", part.number)
 }
 
-/// Crater filling and wire retraction at the end of a seam as the section `start_stop` sets them, where it does.
+/// Crater filling and wire retraction at the end of a seam as in the section `start_stop`, if it sets them.
 fn with_ends(mut rapid: Rapid, job: &Job<'_>) -> Rapid {
     let ends = &job.weld.ends;
     if ends.crater_fill_time > 0.0 {

@@ -22,11 +22,11 @@ pub struct FaultKind {
 pub struct Fault {
     /// What kind it is.
     pub kind: &'static FaultKind,
-    /// Where it was found first; `None` where it concerns the program as a whole.
+    /// Where it was first found; `None` if it concerns the program as a whole.
     pub place: Option<Place>,
     /// How often it was found.
     pub count: usize,
-    /// What is there: a sentence.
+    /// What was found: a sentence.
     pub text: String,
 }
 
@@ -125,15 +125,15 @@ kinds! {
         "end the arc before it"
 }
 
-/// Dangerous lines as they are found.
+/// Dangerous lines, being collected.
 #[derive(Debug, Clone, Default)]
 pub(in crate::dialect) struct Faults(Vec<Fault>);
 
-/// The greatest number of different ones of a kind that are kept.
+/// Most distinct faults of a kind that are kept.
 const MOST_OF_A_KIND: usize = 10;
 
 impl Faults {
-    /// Adds one at a place; the same at another place is counted, and a line has no kind twice.
+    /// Adds a fault; the same at another line only increases the count, and a line has each kind at most once.
     pub(in crate::dialect) fn add(&mut self, kind: &'static FaultKind, place: Option<Place>, text: impl Into<String>) {
         let text = text.into();
         if place.is_some() && self.0.iter().any(|fault| fault.kind == kind && fault.place == place) {
@@ -147,7 +147,7 @@ impl Faults {
         }
     }
 
-    /// Those that were found, in the order of the kinds.
+    /// The collected faults, in the order of the kinds.
     pub(in crate::dialect) fn sorted(self) -> Vec<Fault> {
         let mut all = self.0;
         let rank = |fault: &Fault| FAULTS.iter().position(|kind| *kind == fault.kind);

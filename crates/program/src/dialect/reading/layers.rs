@@ -11,13 +11,13 @@ const SAME_Z_MM: f64 = 0.01;
 /// Consecutive deposited moves of `n` points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadPass {
-    /// Where the bead runs, mm.
+    /// Centre-line of the bead, mm.
     pub points: Vec<DVec3>,
-    /// Speed between two points, mm/s, 0 for unknown; n − 1.
+    /// Speed between two points, mm/s, 0 if unknown; n − 1 values.
     pub speed: Vec<f64>,
-    /// Volume laid between two points where the program gives it, mm³; n − 1.
+    /// Volume laid between two points, if the program gives it, mm³; n − 1 values.
     pub volume: Vec<Option<f64>>,
-    /// Bead width between two points where the program gives it, mm; n − 1.
+    /// Bead width between two points, if the program gives it, mm; n − 1 values.
     pub width: Vec<Option<f64>>,
     /// Line of the first deposited move, from 1.
     pub line: usize,
@@ -28,13 +28,14 @@ pub struct ReadPass {
 pub struct ReadLayer {
     /// Height at which the passes begin, mm.
     pub z: f64,
-    /// Rise above the layer below, mm; for the lowest layer its z if above 0, else the rise of the next. 0 if unknown.
+    /// Rise above the layer below, mm; for the lowest layer its z if positive, otherwise the rise of the next. 0 if
+    /// unknown.
     pub height: f64,
     /// Passes in the order of the program.
     pub passes: Vec<ReadPass>,
 }
 
-/// Totals of a program that was read.
+/// Totals of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ReadTotals {
     /// Runs of deposited moves.
@@ -45,7 +46,7 @@ pub struct ReadTotals {
     pub travel_length_mm: f64,
     /// Time of the moves with known speed and of all waits, s; without acceleration.
     pub time_s: f64,
-    /// Volume of metal where the program gives it, mm³.
+    /// Volume of metal, if the program gives it, mm³.
     pub volume_mm3: Option<f64>,
 }
 
@@ -103,8 +104,8 @@ impl ReadProgram {
         totals
     }
 
-    /// Time of all moves with known speed on a machine that speeds up and slows down, and of all waits, s. Every
-    /// run of deposited moves and every run of other moves begins and ends at rest.
+    /// Time of all moves with known speed, with acceleration, and of all waits, s. Every run of deposited moves and
+    /// every run of other moves begins and ends at rest.
     pub fn seconds(&self, motion: &Motion) -> f64 {
         let Some(first) = self.moves.first() else { return self.dwell };
         let (mut at, mut time) = (first.to, self.dwell);

@@ -3,7 +3,7 @@
 use super::ReadError;
 use super::words::{compact, number};
 
-/// What a line is to the block around it: a loop, or a branch.
+/// The role of a line in a block: a loop, or a branch.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::dialect) enum Mark {
     Begin,
@@ -14,16 +14,16 @@ pub(in crate::dialect) enum Mark {
 /// What comes after a line.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::dialect) enum Next {
-    /// The next line; where a block begins, a block of which nothing is known: all its lines run once.
+    /// The next line. At the beginning of a block: it cannot be evaluated, and all its lines run once.
     On,
-    /// The lines of the block that begins here, this many times; a branch is taken once or not at all.
+    /// The lines of the block that begins here, this many times; a branch runs once or not at all.
     Turns(u64),
     /// The line with this index, further down.
     To(usize),
 }
 
 impl Next {
-    /// Whether a branch is taken, where that is known.
+    /// Runs a branch if it is taken; `None` if that is unknown.
     pub(in crate::dialect) fn taken(known: Option<bool>) -> Self {
         known.map_or(Self::On, |taken| Self::Turns(taken.into()))
     }
@@ -33,14 +33,14 @@ impl Next {
 struct Open {
     /// Its first line.
     body: usize,
-    /// Turns left.
+    /// Remaining iterations.
     left: u64,
-    /// Whether it is known that it runs.
+    /// Whether the block is known to run.
     known: bool,
 }
 
-/// Runs `count` lines one after another, those of a block as often as it turns. `mark` says where blocks begin and end;
-/// `step` runs a line and says what comes after it.
+/// Runs `count` lines one after another, those of a block as often as it iterates. `mark` says where blocks begin and
+/// end; `step` runs a line and says what comes after it.
 pub(in crate::dialect) fn unrolled(
     count: usize,
     mark: impl Fn(usize) -> Option<Mark>,
@@ -104,8 +104,8 @@ pub(in crate::dialect) fn behind(first: usize, count: usize, mark: impl Fn(usize
     count
 }
 
-/// Whether a comparison of plain numbers and of variables whose values are known holds, such as `a <= 70003`; `None` for
-/// any other condition.
+/// Whether a comparison of plain numbers and of variables with known values holds, such as `a <= 70003`; `None` for any
+/// other condition.
 pub(in crate::dialect) fn holds(condition: &str, value: impl Fn(&str) -> Option<f64>) -> Option<bool> {
     const SIGNS: [&str; 8] = ["<=", ">=", "<>", "!=", "==", "=", "<", ">"];
     let inside = condition.trim().strip_prefix('(').and_then(|rest| rest.strip_suffix(')'));
@@ -123,7 +123,7 @@ pub(in crate::dialect) fn holds(condition: &str, value: impl Fn(&str) -> Option<
     })
 }
 
-/// Which way a loop counts where it gives no step.
+/// The direction in which a loop counts if it gives no step.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(in crate::dialect) enum Counting {
     /// Always up.
@@ -132,8 +132,8 @@ pub(in crate::dialect) enum Counting {
     Towards,
 }
 
-/// How often `FOR i=1 TO 10 STEP 2`, `FOR i FROM 1 TO 10 DO` or `FOR R[1]=5 DOWNTO 1` turns; `before` is the sign or
-/// word before the first value. `None` where a bound is not a plain number.
+/// Number of iterations of `FOR i=1 TO 10 STEP 2`, `FOR i FROM 1 TO 10 DO` or `FOR R[1]=5 DOWNTO 1`; `before` is the
+/// sign or word before the first value. `None` if a bound is not a plain number.
 pub(in crate::dialect) fn turns(text: &str, before: &str, counting: Counting) -> Option<u64> {
     let flat = compact(text);
     let (_, bounds) = flat.strip_suffix("DO").unwrap_or(&flat).split_once(before)?;
@@ -154,9 +154,9 @@ pub(in crate::dialect) fn turns(text: &str, before: &str, counting: Counting) ->
     stepped(from, to, step)
 }
 
-/// How many values there are from one bound to the other.
+/// Number of values from one bound to the other; `None` if that is not finite.
 pub(in crate::dialect) fn stepped(from: f64, to: f64, step: f64) -> Option<u64> {
     let steps = (to - from) / step;
-    // The cast saturates; the limit on turns is far below.
+    // The cast saturates; the limit on iterations is far below that.
     steps.is_finite().then(|| if steps < -1e-9 { 0 } else { (steps + 1e-9) as u64 + 1 })
 }

@@ -4,9 +4,9 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `words` | numbers, names and patterns of the robots' languages |
-//! | `trace` | the moves as they come: places, flattened arcs, notes |
+//! | `trace` | the moves as they are read: positions, flattened arcs, notes |
 //! | `loops` | loops with constant bounds |
-//! | `fault`, `watch` | lines that would be dangerous, and what watches the arc |
+//! | `fault`, `watch` | lines that would be dangerous, and arc monitoring |
 //! | `layers` | [`ReadProgram::layers`] and [`ReadProgram::totals`] |
 //!
 //! Programs are read from top to bottom; calls are followed, and loops with constant bounds run as often as they say.
@@ -29,7 +29,7 @@ use bead_part::model::MAX_REACH_MM;
 use glam::DVec3;
 use std::fmt;
 
-/// What a move lays.
+/// The metal laid by a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Metal {
     /// Nothing.
@@ -50,13 +50,13 @@ impl Metal {
 /// One straight move of a program; arcs are flattened to chords within [`CHORD_MM`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Move {
-    /// Where it ends, mm. It begins where the move before ends; the first one only says where the program begins.
+    /// End point, mm. The move begins where the one before ends; the first one only says where the program begins.
     pub to: DVec3,
-    /// Speed, mm/s; 0 where the program does not give it (rapids, point-to-point moves).
+    /// Speed, mm/s; 0 if the program does not give it (rapids, point-to-point moves).
     pub speed: f64,
-    /// What it lays.
+    /// The metal it lays.
     pub metal: Metal,
-    /// Bead width where the program states it, mm.
+    /// Bead width, if the program states it, mm.
     pub width: Option<f64>,
     /// Line of the file or module that holds the move, from 1.
     pub line: usize,
@@ -65,7 +65,7 @@ pub struct Move {
 /// A program read back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadProgram {
-    /// Its language, such as KRL.
+    /// Its language in words, such as KRL.
     pub language: &'static str,
     /// All moves in order.
     pub moves: Vec<Move>,
@@ -77,7 +77,7 @@ pub struct ReadProgram {
     pub faults: Vec<Fault>,
 }
 
-/// Codes that strike and end the arc, in addition to those that a dialect knows by itself, or in their place.
+/// Codes that strike and end the arc, in addition to those that a dialect recognises by itself, or in their place.
 ///
 /// For G-code they are words (`M64 P1`) or a macro's name; for robots a statement such as `$OUT[2] = TRUE`,
 /// `SetDO doArc,1` or `set_standard_digital_out(1, True)`. Case and blanks do not matter.
@@ -87,13 +87,13 @@ pub struct ArcCodes {
     pub on: Vec<String>,
     /// Codes that end the arc.
     pub off: Vec<String>,
-    /// Whether M3, M4 and M5 of G-code switch no arc where other codes do: a spindle or a laser, say.
+    /// Whether these codes replace M3, M4 and M5 of G-code, which then switch a spindle or a laser, say.
     pub alone: bool,
 }
 
 impl ReadProgram {
-    /// Assumes a speed, mm/s, for every move without metal for which the program gives none: rapids (G0), and joint moves
-    /// along the chord of their path. Returns how many there are, and their length, mm.
+    /// Assumes a speed, mm/s, for every move without metal for which the program gives none: rapids (G0), and joint
+    /// moves along the chord of their path. Returns the number of these moves, and their length, mm.
     ///
     /// ```
     /// use bead_program::dialect::reading::{Options, read};
@@ -129,7 +129,7 @@ pub struct Options {
     /// Whether `V=` in INFORM is in cm/min instead of mm/s; controllers can be set to either, and jobs do not say
     /// which.
     pub inform_cm_per_min: bool,
-    /// Name of the main file, as the controller will know it.
+    /// Name of the main file on the controller.
     pub file: Option<String>,
     /// The largest KRL program or script that the controller accepts, MB.
     pub max_megabytes: Option<f64>,
@@ -140,7 +140,7 @@ pub struct Options {
 pub struct Place {
     /// Line from 1.
     pub line: usize,
-    /// Name of the module; none for the main file.
+    /// Name of the module; `None` for the main file.
     pub module: Option<String>,
 }
 
@@ -172,7 +172,7 @@ pub enum ReadError {
         /// What was found instead.
         text: String,
     },
-    /// A called program is not there.
+    /// A called program is missing.
     #[error(
         "{place} calls {name}, which is not in the program and was not found next to it. Put its file there, or remove the call \
          if nothing moves in it."
@@ -194,14 +194,14 @@ pub enum ReadError {
         /// What is called.
         name: String,
     },
-    /// Loops that turn too often.
+    /// Too many loop iterations.
     #[error(
         "{place}: the loops up to here run more than {most} times in all, and no more are read. Give part of the program, or \
          fewer runs.",
         most = trace::MAX_TURNS
     )]
     TooManyTurns {
-        /// Where the last of them ends.
+        /// The end of the last of these loops.
         place: Place,
     },
     /// A bead on a curve that only the controller can compute.
@@ -252,7 +252,7 @@ pub enum ReadError {
         /// Where.
         place: Place,
     },
-    /// The file declares data and holds nothing to run.
+    /// The file only declares data and has nothing to run.
     #[error("this {0} file holds no program to run (no DEF, no PROC). Give the file with the motions.")]
     NoProgram(&'static str),
     /// No move lays metal.
@@ -286,7 +286,7 @@ pub fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -> Resul
     (recognise(text).ok_or(ReadError::UnknownDialect)?.read)(text, module, options)
 }
 
-/// The dialect of a program, if it is one of those that can be read: the first line that is typical of one decides.
+/// The dialect of a program, if it can be read: decided by the first line that is typical of one.
 ///
 /// ```
 /// use bead_program::dialect::reading::recognise;

@@ -1,4 +1,4 @@
-//! The moves of a program as a reader finds them: positions that may be unknown, arcs, notes.
+//! The moves of a program as a reader finds them: possibly unknown positions, arcs, notes.
 
 use super::fault::{ENDLESS_WAIT, Faults, LEFT_ON, MISSING_AXIS, STATIC_FRAME, TURNING_TORCH};
 use super::watch::Watch;
@@ -7,7 +7,7 @@ use bead_part::model::MAX_REACH_MM;
 use glam::{DQuat, DVec3};
 use std::f64::consts::TAU;
 
-/// Chords lie this close to their arc, mm.
+/// Greatest distance of chords from their arc, mm.
 pub const CHORD_MM: f64 = 0.01;
 
 /// Deepest nesting of calls.
@@ -16,7 +16,7 @@ pub(in crate::dialect) const MAX_DEPTH: usize = 32;
 /// Maximum number of calls in a program.
 const MAX_CALLS: usize = 100_000;
 
-/// Maximum number of turns of all loops together.
+/// Most iterations of all loops together.
 pub(super) const MAX_TURNS: usize = 100_000;
 
 /// Maximum number of moves, with arcs as chords.
@@ -25,39 +25,39 @@ pub(super) const MAX_MOVES: usize = 10_000_000;
 /// Maximum number of chords of an arc.
 const MAX_CHORDS: f64 = 100_000.0;
 
-/// Maximum number of different notes; the rest are counted together.
+/// Most distinct notes; the rest are counted together.
 const MAX_NOTES: usize = 60;
 
-/// Maximum number of codes named when no arc was found.
+/// Most codes named if no arc was found.
 const MAX_SEEN: usize = 8;
 
 /// A move without its end point.
 #[derive(Clone, Copy)]
 pub(in crate::dialect) struct Step {
-    /// mm/s, 0 for unknown.
+    /// Speed, mm/s; 0 if unknown.
     pub(in crate::dialect) speed: f64,
     pub(in crate::dialect) metal: Metal,
-    /// mm
+    /// Bead width, mm.
     pub(in crate::dialect) width: Option<f64>,
     pub(in crate::dialect) line: usize,
 }
 
-/// What a target states about the torch's attitude, besides its place.
+/// What a target states about the torch's orientation, besides its position.
 #[derive(Clone, Copy, Default)]
 pub(in crate::dialect) struct Stated {
-    /// The tool, in the frame of the place.
+    /// Orientation of the tool, in the frame of the position.
     pub(in crate::dialect) tool: Option<DQuat>,
     /// Axes other than the robot's, mm or °.
     pub(in crate::dialect) axes: [Option<f64>; 6],
 }
 
-/// A torch that turns faster than this with the arc on swings, ° for each mm of its path.
+/// With the arc on, a torch that turns faster than this swings, ° per mm of its path.
 const MOST_TURN_A_MM: f64 = 30.0;
 
-/// Smaller turns do not count, °.
+/// Turns smaller than this do not count, °.
 const LEAST_TURN: f64 = 5.0;
 
-/// Smaller moves of an axis do not count, mm or °.
+/// Moves of an axis smaller than this do not count, mm or °.
 const LEAST_AXIS: f64 = 0.05;
 
 /// An arc `centre + u cos t + v sin t + rise t/sweep`, t from 0 to `sweep`.
@@ -65,7 +65,7 @@ pub(in crate::dialect) struct Curve {
     pub(in crate::dialect) centre: DVec3,
     pub(in crate::dialect) u: DVec3,
     pub(in crate::dialect) v: DVec3,
-    /// Radians, above 0.
+    /// Radians, positive.
     pub(in crate::dialect) sweep: f64,
     pub(in crate::dialect) rise: DVec3,
 }
@@ -94,7 +94,7 @@ impl Curve {
         Self { centre: self.centre, u, v, sweep: self.sweep - passed, rise: DVec3::ZERO }
     }
 
-    /// How far a point lies from the whole circle, mm.
+    /// Distance of a point from the full circle, mm.
     fn off(&self, point: DVec3) -> f64 {
         let arm = point - self.centre;
         let height = arm.dot(self.u.cross(self.v).normalize_or_zero());
@@ -126,18 +126,18 @@ pub(in crate::dialect) struct Trace {
     pub(in crate::dialect) known: [bool; 3],
     pub(in crate::dialect) arc: bool,
     pub(in crate::dialect) dwell: f64,
-    /// The module being read; none for the main file.
+    /// The module being read; `None` for the main file.
     pub(in crate::dialect) module: Option<String>,
     /// Dangerous lines.
     pub(in crate::dialect) faults: Faults,
-    /// What watches the arc.
+    /// Arc monitoring.
     pub(in crate::dialect) watch: Watch,
     /// Whether the frame of the part turns with the table under it.
     pub(in crate::dialect) frame_turns: bool,
-    /// Text that was read, bytes.
+    /// Bytes of text read.
     pub(in crate::dialect) bytes: usize,
     tool: Option<DQuat>,
-    /// Axes other than the robot's, as the last target states them.
+    /// Axes other than the robot's, as stated by the last target.
     axes: Option<[Option<f64>; 6]>,
     /// The same for home.
     home: Option<[Option<f64>; 6]>,
@@ -188,7 +188,7 @@ impl Trace {
         ReadError::Number { place: self.place(line), text: text.trim().chars().take(60).collect() }
     }
 
-    /// Notes `what` and what became of it.
+    /// Notes `what` and how it was handled.
     pub(in crate::dialect) fn note(&mut self, what: &str, fate: &'static str, line: usize) {
         let full = self.notes.len() >= MAX_NOTES;
         let (what, fate) = match self.notes.iter_mut().find(|n| n.fate == fate && n.what == what) {
@@ -218,7 +218,7 @@ impl Trace {
         self.arc = on;
     }
 
-    /// A statement halts the program, or asks somebody.
+    /// Records a statement that halts the program or asks the operator.
     pub(in crate::dialect) fn halts(&mut self, statement: &str, line: usize) {
         if self.arc {
             let place = Some(self.place(line));
@@ -226,7 +226,7 @@ impl Trace {
         }
     }
 
-    /// A statement waits for a signal without a time limit.
+    /// Records a statement that waits for a signal without a time limit.
     pub(in crate::dialect) fn waits(&mut self, statement: &str, line: usize) {
         if self.arc {
             let place = Some(self.place(line));
@@ -234,24 +234,24 @@ impl Trace {
         }
     }
 
-    /// The program ends with these outputs on, which were on while the arc burned.
+    /// Records that the program ends with these outputs on, which were on while the arc burned.
     pub(in crate::dialect) fn ends_with(&mut self, outputs: &[String]) {
         if !outputs.is_empty() && !self.arc {
             self.faults.add(&LEFT_ON, None, format!("the program ends with {} on.", outputs.join(" and ")));
         }
     }
 
-    /// `Arc` or `Off` as it is now.
+    /// The metal of moves in the current state of the arc: `Arc` or `Off`.
     pub(in crate::dialect) fn metal(&self) -> Metal {
         if self.arc { Metal::Arc } else { Metal::Off }
     }
 
-    /// The position is no longer known.
+    /// Makes the position unknown.
     pub(in crate::dialect) fn forget(&mut self) {
         self.known = [false; 3];
     }
 
-    /// What a motion states besides its place `to`, before it is made; `what` names the motion.
+    /// Checks what a motion to `to` states besides its position, before it is made; `what` names the motion.
     pub(in crate::dialect) fn stand(&mut self, stated: &Stated, to: DVec3, what: &str, line: usize) {
         let place = Some(self.place(line));
         self.states_axes(&stated.axes, what, line);
@@ -267,7 +267,7 @@ impl Trace {
                 axis + 1
             );
             self.faults.add(&STATIC_FRAME, place.clone(), text);
-            // The part turns away below the path.
+            // The part turns away underneath the path.
             let angle = stated.axes[axis].unwrap_or_default();
             let from = self.axes.and_then(|axes| axes[axis]).unwrap_or_default();
             self.turn[1] = angle - *self.table.get_or_insert(from);
@@ -284,7 +284,7 @@ impl Trace {
         self.axes = Some(stated.axes);
     }
 
-    /// All targets state the same axes, and home states them too.
+    /// Checks that all targets state the same axes, and that home states them too.
     pub(in crate::dialect) fn states_axes(&mut self, axes: &[Option<f64>; 6], what: &str, line: usize) {
         let differs = |axis: &usize| match (self.axes, self.home) {
             (Some(before), _) => before[*axis].is_some() != axes[*axis].is_some(),
@@ -303,7 +303,7 @@ impl Trace {
         }
     }
 
-    /// Axes that a target without a place states: home. It may state axes that are not used.
+    /// Records the axes stated by a target without a position: home. It may state axes that are not used.
     pub(in crate::dialect) fn home(&mut self, axes: &[Option<f64>; 6], what: &str, line: usize) {
         let lacks = |axis: &usize| self.axes.is_some_and(|before| before[*axis].is_some()) && axes[*axis].is_none();
         if let Some(axis) = (0..6).find(lacks) {
@@ -334,7 +334,7 @@ impl Trace {
         }
     }
 
-    /// Assumes the last values for unknown axes, since metal is laid from here.
+    /// Assumes the last values of unknown axes, because metal is laid from here.
     pub(in crate::dialect) fn settle(&mut self, line: usize) {
         if self.known != [true; 3] {
             self.note(
@@ -347,8 +347,8 @@ impl Trace {
         }
     }
 
-    /// An arc through `aux` to `end`; it turns through `angle`, radians, if that is given: against the order of the
-    /// points if it is below 0.
+    /// An arc through `aux` to `end`; if `angle` (radians) is given, it turns through that angle, against the order of
+    /// the points if negative.
     pub(in crate::dialect) fn arc_over(&mut self, aux: DVec3, end: DVec3, angle: Option<f64>, step: Step) {
         if self.known != [true; 3] {
             self.line(end.to_array().map(Some), step);
@@ -380,7 +380,7 @@ impl Trace {
         }
     }
 
-    /// How far a point lies from the circle through two points and the current position, mm.
+    /// Distance of a point from the circle through two points and the current position, mm.
     pub(in crate::dialect) fn off_circle(&self, [first, second]: [DVec3; 2], point: DVec3) -> f64 {
         Curve::through(first, second, self.at).map_or(0.0, |circle| circle.off(point))
     }
@@ -414,12 +414,12 @@ impl Trace {
         self.moves.push(Move { to, speed, metal, width: width.filter(|_| metal.is_laid()), line });
     }
 
-    /// Accepts nothing more; the first fault counts.
+    /// Accepts nothing more; the first fault is kept.
     fn fail(&mut self, fault: ReadError) {
         self.fault.get_or_insert(fault);
     }
 
-    /// Counts a turn of a loop.
+    /// Counts an iteration of a loop.
     pub(in crate::dialect) fn turn(&mut self, line: usize) -> Result<(), ReadError> {
         self.turns += 1;
         match &self.fault {
@@ -441,7 +441,7 @@ impl Trace {
         Ok(())
     }
 
-    /// The program, if it lays anything.
+    /// The program, if it lays any metal.
     pub(in crate::dialect) fn finish(mut self, language: &'static str) -> Result<ReadProgram, ReadError> {
         if let Some(fault) = self.fault {
             return Err(fault);
@@ -467,7 +467,8 @@ impl Trace {
     }
 }
 
-/// A place in a frame that does not move, on a part that has turned by an angle (°) about the frame's origin.
+/// The position, in a frame that does not move, of a point on a part that has turned by an angle (°) about the frame's
+/// origin.
 fn turned_back(at: DVec3, angle: f64) -> DVec3 {
     if angle == 0.0 { at } else { DQuat::from_rotation_z(-angle.to_radians()) * at }
 }

@@ -1,8 +1,8 @@
-//! Conditions that are combined with OR, AND, NOT and brackets.
+//! Conditions combined with OR, AND, NOT and brackets.
 
 use super::words::strip_word;
 
-/// Whether a condition holds, where that follows from those of its parts that `part` knows.
+/// Whether a condition holds, if that follows from those of its parts that `part` can evaluate.
 pub(in crate::dialect) fn truth(condition: &str, part: &impl Fn(&str) -> Option<bool>) -> Option<bool> {
     let condition = condition.trim();
     for (word, decides) in [("or", true), ("and", false)] {

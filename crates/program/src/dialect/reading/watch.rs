@@ -1,18 +1,18 @@
-//! What watches the arc while a program is read: what strikes it, what is armed, what was checked, and whether the torch has
-//! stopped.
+//! Arc monitoring while a program is read: what strikes the arc, what is armed, what was checked, and whether the torch
+//! has stopped.
 
 use super::Place;
 use super::fault::{BLENDED_SWITCH, Faults, UNWATCHED_ARC, UNWATCHED_END, UNWATCHED_START};
 
-/// The watch over an arc that is struck by outputs; packages watch theirs themselves.
+/// Monitoring of an arc that is struck by outputs; packages monitor theirs themselves.
 #[derive(Debug, Clone, Default)]
 pub(in crate::dialect) struct Watch {
-    /// Whether outputs strike the arc, now or before.
+    /// Whether outputs strike the arc, or did before.
     pub(in crate::dialect) by_outputs: bool,
     lit: bool,
     armed: bool,
     looked: bool,
-    /// Whether a move was laid since the arc was struck.
+    /// Whether metal was laid since the arc was struck.
     moved: bool,
     /// How the last move is blended into the next, if it is.
     blended: Option<String>,
@@ -21,7 +21,7 @@ pub(in crate::dialect) struct Watch {
 }
 
 impl Watch {
-    /// The arc is switched by an output.
+    /// An output switches the arc.
     pub(in crate::dialect) fn switch(&mut self, on: bool, faults: &mut Faults, place: Place) {
         if let Some(blend) = self.blended.as_ref().filter(|_| on != self.lit) {
             let what = if on { "struck" } else { "ended" };
@@ -34,12 +34,12 @@ impl Watch {
         }
     }
 
-    /// A watch is armed on the input of the arc.
+    /// Monitoring is armed on the arc's input.
     pub(in crate::dialect) fn arm(&mut self) {
         (self.armed, self.looked) = (true, false);
     }
 
-    /// The watch ends.
+    /// Monitoring ends.
     pub(in crate::dialect) fn disarm(&mut self, how: &str, faults: &mut Faults, place: Place) {
         if self.armed && self.lit && self.moved && !self.waited {
             let text = format!("{how} comes directly after a move, which the robot has not made yet.");
@@ -48,7 +48,7 @@ impl Watch {
         self.armed = false;
     }
 
-    /// The program checks the input of the arc.
+    /// The program checks the arc's input.
     pub(in crate::dialect) fn look(&mut self) {
         self.looked = true;
     }
@@ -59,7 +59,7 @@ impl Watch {
         self.blended = None;
     }
 
-    /// The robot moves; `blended` says how it blends into the next move.
+    /// The robot moves; `blended` says how the move blends into the next.
     pub(in crate::dialect) fn go(&mut self, blended: Option<&str>, faults: &mut Faults, place: Place) {
         if self.lit && !self.moved {
             if !self.armed {

@@ -9,13 +9,13 @@ fn in_name(c: char) -> bool {
     c.is_ascii_alphanumeric() || c == '_'
 }
 
-/// What follows `word` (in any case) at the start of the text, trimmed, if the word ends there.
+/// The text after `word` (in any case) at the start, trimmed, if the word ends there.
 pub(in crate::dialect) fn strip_word<'a>(text: &'a str, word: &str) -> Option<&'a str> {
     let (head, rest) = text.split_at_checked(word.len())?;
     (head.eq_ignore_ascii_case(word) && !rest.starts_with(in_name)).then(|| rest.trim_start())
 }
 
-/// A condition without the word (in any case) after it, such as THEN or DO.
+/// A condition without a trailing word (in any case) such as THEN or DO.
 pub(in crate::dialect) fn without_end<'a>(condition: &'a str, word: &str) -> &'a str {
     let end = condition.len().checked_sub(word.len()).filter(|at| {
         let bounded = condition.get(..*at).is_some_and(|before| !before.ends_with(in_name));
@@ -34,7 +34,7 @@ pub(in crate::dialect) fn begins_with(text: &str, words: &[&str]) -> bool {
     words.iter().any(|word| strip_word(text, word).is_some())
 }
 
-/// The name at the start of the text (letters, digits, `_`, perhaps none) and the trimmed rest.
+/// The name at the start of the text (letters, digits, `_`; may be empty) and the trimmed rest.
 pub(in crate::dialect) fn name(text: &str) -> (&str, &str) {
     let end = text.find(|c| !in_name(c)).unwrap_or(text.len());
     (&text[..end], text[end..].trim_start())
@@ -45,7 +45,7 @@ pub(in crate::dialect) fn compact(text: &str) -> String {
     text.chars().filter(|c| !c.is_whitespace()).map(|c| c.to_ascii_uppercase()).collect()
 }
 
-/// The text up to a comment sign outside quotes.
+/// The text before a comment sign outside quotes.
 pub(in crate::dialect) fn before_comment(line: &str, sign: char) -> &str {
     let mut quoted = false;
     let found = line.find(|c| {

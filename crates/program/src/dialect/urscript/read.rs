@@ -1,4 +1,5 @@
-//! URScript: movej, movel, movep and movec to poses, written out or named, and the functions that a program calls.
+//! Reads URScript: movej, movel, movep and movec to poses, written out or named, and the functions that a program
+//! calls.
 //!
 //! Positions are in the frame given to `pose_trans`, in mm. The arc is switched by the codes in the options, such as
 //! `set_standard_digital_out(1, True)`. Lines outside functions run from top to bottom; if a file only defines a
@@ -56,14 +57,14 @@ enum Value {
 struct Pose {
     /// Its frame; empty for the base.
     frame: String,
-    /// mm
+    /// Position, mm.
     at: DVec3,
     tool: Option<DQuat>,
 }
 
 /// Whether a line can occur only in URScript.
 pub(super) fn typical(line: &str) -> bool {
-    // Calls: in RAPID no bracket follows a move.
+    // Calls; in RAPID no bracket follows a move.
     const CALLS: [&str; 5] = ["movel(", "movej(", "movep(", "movec(", "set_tcp("];
     let function = line.starts_with("def ") && before_comment(line, '#').trim_end().ends_with(':');
     function || CALLS.iter().any(|call| line.starts_with(call))
@@ -99,7 +100,7 @@ pub(super) fn read(text: &str, _module: &mut FindModule<'_>, options: &Options) 
 /// The functions by name, the lines outside them, and the name of the first function.
 fn functions(text: &str) -> (HashMap<String, Rc<Body>>, Body, Option<String>) {
     let (mut found, mut top, mut first) = (HashMap::new(), Body::new(), None);
-    // Functions that are open, each with the other blocks open in it.
+    // Open functions, each with the number of other blocks open in it.
     let mut open: Vec<(String, Body, usize)> = Vec::new();
     for (i, raw) in text.lines().enumerate() {
         let line = before_comment(raw, '#').trim();
@@ -125,7 +126,7 @@ fn functions(text: &str) -> (HashMap<String, Rc<Body>>, Body, Option<String>) {
             body.push((i + 1, line.to_owned()));
         }
     }
-    // A file cut short runs as far as it goes.
+    // A truncated file runs as far as it goes.
     found.extend(open.into_iter().map(|(name, body, _)| (name, Rc::new(body))));
     (found, top, first)
 }
@@ -142,9 +143,9 @@ struct Reader {
     outputs: BTreeSet<u32>,
     /// Outputs that were on while the arc burned through them.
     lit_with: BTreeSet<u32>,
-    /// Outputs that are low whenever the program does not run.
+    /// Outputs that are low while the program is not running.
     low_when_stopped: BTreeSet<u32>,
-    /// The handle of the thread that watches the arc.
+    /// The handle of the thread that monitors the arc.
     thread: Option<String>,
 }
 
@@ -156,7 +157,8 @@ fn output(flat: &str) -> Option<(u32, bool)> {
 }
 
 impl Reader {
-    /// What a welding programmer sees without running it: questions and waits that leave outputs on, and stops that do so.
+    /// Checks what a welding programmer notices without running it: questions and waits that leave outputs on, and
+    /// stops that do so.
     fn review(&mut self, options: &Options) {
         let mut functions: Vec<(String, Rc<Body>)> = self.functions.clone().into_iter().collect();
         functions.sort_by(|a, b| a.0.cmp(&b.0));
@@ -227,8 +229,9 @@ impl Reader {
         )
     }
 
-    /// How often the block at the start of these lines turns: a branch whose condition is known, or that only tests an input
-    /// and moves nothing; `while i < 5:` where `i` is known and changes once per turn by a plain number.
+    /// Number of iterations of the block at the start of these lines: a branch whose condition is known, or that only
+    /// tests an input and moves nothing; `while i < 5:` where `i` is known and changes once per iteration by a plain
+    /// number.
     fn turns(&mut self, lines: &[(usize, String)]) -> Option<u64> {
         let head = &lines.first()?.1;
         let until = behind(1, lines.len(), |at| mark(&lines[at].1));
@@ -257,7 +260,7 @@ impl Reader {
         let (variable, below) = (variable.trim(), condition.contains('<'));
         let (from, to, step) = (self.number(variable)?, self.number(bound)?, step(lines, variable)?);
         let holds = if below { from < to } else { from > to } || (ends && from == to);
-        // Just short of a bound that does not count.
+        // Just short of an exclusive bound.
         let to = if ends { to } else { to - 1e-6 * step };
         match holds {
             false => Some(0),
@@ -266,7 +269,7 @@ impl Reader {
         }
     }
 
-    /// Whether `get_standard_digital_out(1)` is on, which it is if the program has switched it on.
+    /// Whether `get_standard_digital_out(1)` is on, that is, whether the program has switched it on.
     fn output_is_on(&self, part: &str) -> Option<bool> {
         let flat = compact(part);
         let (read, number) = flat.strip_suffix(')')?.split_once('(')?;
@@ -304,7 +307,7 @@ impl Reader {
                 self.lit_with.extend(&self.outputs);
             }
         } else if let Some(setting) = flat.strip_prefix("SET_RUNSTATE_STANDARD_DIGITAL_OUTPUT_TO_VALUE(") {
-            // 1: low when the program is not running, 3: high when it runs, which it then holds by itself.
+            // 1: low when the program is not running; 3: high while it runs, which is then maintained automatically.
             let numbers: Vec<u32> = setting.trim_end_matches(')').split(',').filter_map(|n| n.parse().ok()).collect();
             if let [output, 1 | 3] = numbers[..] {
                 self.low_when_stopped.insert(output);
@@ -329,7 +332,7 @@ impl Reader {
             if self.functions.get(thread).is_some_and(watches) {
                 self.thread = text.split_once('=').map(|(handle, _)| handle.trim().to_owned());
                 self.trace.watch.arm();
-                // It checks the input by itself, all the time.
+                // It monitors the input by itself, all the time.
                 self.trace.watch.look();
             }
         } else if rest.starts_with('(') && self.functions.contains_key(word) {
@@ -376,7 +379,7 @@ impl Reader {
         }
         if let Some(rest) = strip_word(text, "pose_trans") {
             let [frame, pose] = arguments(inside(rest))[..] else { return Ok(None) };
-            // Frames within frames are not composed.
+            // Nested frames are not composed.
             let found = self.pose(pose, line)?.filter(|pose| pose.frame.is_empty());
             return Ok(found.map(|pose| Pose { frame: compact(frame), ..pose }));
         }
@@ -413,7 +416,7 @@ impl Reader {
         let place = self.trace.place(line);
         self.trace.watch.go(blended.then_some("a blend"), &mut self.trace.faults, place.clone());
         if !blended {
-            // What follows runs once the robot has stopped.
+            // The following statements run once the robot has stopped.
             self.trace.watch.wait();
         }
         if let Some(Some(last)) = places.last() {
@@ -443,7 +446,7 @@ impl Reader {
         Ok(())
     }
 
-    /// m/s of `v=..`, or of the second number after the poses.
+    /// Speed in m/s of `v=..`, or of the second number after the poses.
     fn speed(&self, pieces: &[&str], poses: usize) -> Option<f64> {
         let named = pieces.iter().find_map(|p| Some(p.strip_prefix('v')?.trim_start().strip_prefix('=')?.trim()));
         self.number(named.or_else(|| pieces.get(poses + 1).copied().filter(|p| !p.contains('=')))?)
@@ -461,7 +464,7 @@ fn moves_or_calls(lines: &[(usize, String)]) -> bool {
     lines[1..until].iter().any(|(_, line)| line.starts_with("move"))
 }
 
-/// Whether the block at the start of these lines tests something else too, such as how long it has waited.
+/// Whether the block at the start of these lines tests something else as well, such as how long it has waited.
 fn counts(lines: &[(usize, String)]) -> bool {
     let until = behind(1, lines.len(), |at| mark(&lines[at].1));
     lines[1..until].iter().any(|(_, line)| strip_word(line, "if").is_some())
@@ -473,7 +476,7 @@ fn started(text: &str) -> Option<&str> {
     strip_word(text, "run").map(|thread| name(thread).0)
 }
 
-/// What a condition on inputs alone is while all is well: inputs such as that of a burning arc are on.
+/// The value of a condition on inputs alone in normal operation: inputs such as that of a burning arc are on.
 fn input(condition: &str) -> Option<bool> {
     truth(condition.trim_end_matches(':'), &|part| {
         let (called, rest) = name(part.trim());
@@ -492,8 +495,8 @@ fn mark(line: &str) -> Option<Mark> {
     begins.then_some(Mark::Begin).or((line == "end").then_some(Mark::End))
 }
 
-/// By how much the block at the start of these lines changes a variable; `None` where it does so in any way other than
-/// by one `i = i + 1`, not in an inner block.
+/// The change of a variable per iteration of the block at the start of these lines; `None` if it changes in any way
+/// other than by one `i = i + 1` outside inner blocks.
 fn step(lines: &[(usize, String)], variable: &str) -> Option<f64> {
     let (mut depth, mut found) = (0, None);
     for (_, line) in lines {

@@ -116,7 +116,7 @@ impl Section for Urscript {
     }
 
     fn longest_pass(&self, program: &ProgramSettings) -> Option<usize> {
-        // The longest line of a move; arcs have two poses.
+        // The longest line for a move; arcs have two poses.
         let a_move = if program.arcs { 250 } else { 150 };
         Some((self.max_megabytes * MEGABYTE) as usize / a_move)
     }

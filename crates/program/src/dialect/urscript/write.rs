@@ -1,8 +1,8 @@
-//! URScript of Universal Robots: `NAME.script`, with one function per layer and a program that calls them.
+//! Writes URScript of Universal Robots: `NAME.script`, with one function per layer and a program that calls them.
 //!
-//! Lengths are in metres and angles in radians. Poses are given in the part's frame; `pose_trans` moves them to the
-//! robot's base. Moves of a pass are blended, by less than half the length of the shorter of two neighbours, but not
-//! where the arc switches. Lines end with a line feed alone, as on the controller, which runs Linux.
+//! Lengths are in metres and angles in radians. Poses are given in the part's frame; `pose_trans` transforms them to
+//! the robot's base. Moves of a pass are blended, by less than half the length of the shorter of two neighbours, but
+//! not where the arc is switched. Lines end with a line feed alone, as on the controller, which runs Linux.
 
 use super::section::Urscript;
 use crate::dialect::writing::frame::{self, Frame, Part, Piece, Skippable, Syntax};
@@ -14,7 +14,7 @@ use crate::program::{Attitude, Instruction};
 use bead_plan::pass::PassKind;
 use glam::DVec3;
 
-/// Words of the language and names of its functions that a part might happen to be named after.
+/// Words of the language and names of its functions after which a part might happen to be named.
 const RESERVED: &str = "\
     and break continue def elif else end false global halt if local not or pass return sec self thread true while xor acos \
     asin atan ceil cos d2r exp fail floor force freedrive_mode get_inverse_kin join kill length log movec movej movel movep \
@@ -24,16 +24,16 @@ const RESERVED: &str = "\
 /// Greatest blend between two moves, as a fraction of the length of the shorter one.
 const BLEND_PART: f64 = 0.45;
 
-/// Smaller blends are left out, mm.
+/// Blends smaller than this are omitted, mm.
 const MIN_BLEND: f64 = 0.01;
 
-/// A function has about this many moves at most; a longer pass makes a longer function.
+/// A function has at most about this many moves; a longer pass makes a longer function.
 const MAX_MOVES: usize = 2000;
 
 /// Comments are wrapped at this many characters.
 const MAX_COMMENT: usize = 76;
 
-/// Where to begin.
+/// The variable that holds the pass at which to begin.
 const START: &str = "start_at";
 
 /// Writes URScript.
@@ -101,13 +101,13 @@ impl UniversalScript {
         push_fixed(text, (speed / 1000.0).max(1e-6), 6);
         if blend >= MIN_BLEND {
             text.push_str(", r=");
-            // Rounded down: it must stay under half of the shorter move.
+            // Rounded down: it must stay below half of the shorter move.
             push_fixed(text, (blend * 1000.0).floor() / 1e6, 6);
         }
         text.push_str(if via.is_some() { ", mode=0)\n" } else { ")\n" });
     }
 
-    /// The blend at the end of a move, mm; `next` is the move after it, if one follows without a stop.
+    /// The blend at the end of a move, mm; `next` is the move after it, if there is one without a stop between.
     fn blend(&self, to: DVec3, next: Option<&Instruction>) -> f64 {
         let before = self.at.map_or(0.0, |at| at.distance(to));
         match next {
@@ -165,7 +165,7 @@ impl Syntax for UniversalScript {
         MAX_MOVES
     }
 
-    /// The functions of the layers follow inside the program.
+    /// The functions of the layers follow, inside the program.
     fn begin_main(&mut self) -> Vec<Chunk> {
         self.functions.clear();
         let mut main = Function { text: format!("def {}():\n", self.frame.main), indent: "  " };
@@ -174,7 +174,7 @@ impl Syntax for UniversalScript {
         self.chunks(main)
     }
 
-    /// What runs: home, the functions of the layers, home.
+    /// The statements that run: home, the functions of the layers, home.
     fn end_main(&mut self) -> Vec<Chunk> {
         let mut main = Function { text: String::new(), indent: "  " };
         self.home(&mut main);
@@ -205,7 +205,7 @@ impl Syntax for UniversalScript {
         self.chunks(function)
     }
 
-    /// The call comes at the end.
+    /// The calls come at the end.
     fn call(&mut self, part: &Part) -> Vec<Chunk> {
         self.functions.push(self.name_of(part));
         Vec::new()

@@ -1,10 +1,10 @@
-//! What a job may ask for that only some dialects can write.
+//! Features that only some dialects can write.
 
 use super::{DialectError, Job};
 use crate::dialect::Section;
 use bead_part::chart::Chart;
 
-/// Something that only some dialects can write.
+/// A feature that only some dialects can write.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Extra {
@@ -12,7 +12,7 @@ pub enum Extra {
     Restart,
     /// Heights added to layers (`program.layer_offsets`).
     LayerOffsets,
-    /// A torch that swings (`[weave]`).
+    /// A torch that weaves (`[weave]`).
     Weave,
     /// A torch that leans (`program.follow_wall`, `program.travel_angle`).
     Tilt,
@@ -33,7 +33,7 @@ impl Extra {
         }
     }
 
-    /// What it is in a profile, and what to do without it.
+    /// Its name in a profile, and what to do without it.
     fn words(self) -> (&'static str, &'static str) {
         match self {
             Self::Restart => (
@@ -59,7 +59,7 @@ impl Extra {
     }
 }
 
-/// What cannot be written together with layers that are not level, and what to do.
+/// The feature that cannot be combined with layers that are not level, and what to do.
 fn beside_chart(job: &Job<'_>) -> Option<(&'static str, &'static str)> {
     let (weld, program) = (&job.weld, job.program);
     let pairs = [
@@ -82,7 +82,7 @@ fn beside_chart(job: &Job<'_>) -> Option<(&'static str, &'static str)> {
     pairs.into_iter().find(|(is_asked, ..)| *is_asked && !weld.is_level()).map(|(_, what, remedy)| (what, remedy))
 }
 
-/// Refuses a job that asks for more than the dialect of a section can write.
+/// Refuses a job that needs more than the dialect of a section can write.
 pub(super) fn check(dialect: &'static str, section: &dyn Section, job: &Job<'_>) -> Result<(), DialectError> {
     if let Some((what, remedy)) = beside_chart(job) {
         return Err(DialectError::Cannot { dialect, what, remedy });

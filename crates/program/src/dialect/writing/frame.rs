@@ -1,5 +1,5 @@
-//! The frame that the programs of all welding machines share: heads and ends, layers in files of their own, volumes, the lines
-//! of the profile in their places, passes at which a program may begin. A language adds its [`Syntax`].
+//! The structure that the programs of all welding machines share: heads and ends, layers in separate files, volumes,
+//! the lines of the profile in their places, passes at which a program may begin. A language adds its [`Syntax`].
 
 use super::volumes::{Volumes, from_anywhere};
 use super::{Chunk, DialectError, Hooks, Job, Values, Writer, split};
@@ -10,10 +10,10 @@ use bead_plan::pass::PassKind;
 use bead_plan::process::Process;
 use glam::DVec3;
 
-/// Room in the name of a layer's file for `_L`, and for the number of a part of it: `_999`.
+/// Characters reserved in the name of a layer's file for `_L`, and for the number of a part of it: `_999`.
 pub(in crate::dialect) const SUFFIX: usize = 2 + 4;
 
-/// Bytes of a call besides the name.
+/// Bytes of a call, besides the name.
 const CALL: usize = 5;
 
 /// The lines of a section that go into programs.
@@ -44,7 +44,7 @@ impl Lines {
             layer_start: lines(&[".layer_start"]),
             arc_on: lines(&[".arc_on"]),
             arc_off: lines(&[".arc_off"]),
-            // Without lines of its own, a crater has the general ones.
+            // Without lines of its own, a crater gets the general ones.
             crater: if crater.is_empty() { wire_feed.clone() } else { crater },
             wire_feed,
             end: lines(&[".end", ".footer"]),
@@ -54,19 +54,19 @@ impl Lines {
     }
 }
 
-/// What every program of a welding machine knows.
+/// The state and data that every program of a welding machine has.
 pub(in crate::dialect) struct Frame {
     /// Name of the program.
     pub(in crate::dialect) name: String,
-    /// Name of the main program: that of the volume, where there are several.
+    /// Name of the main program: that of the volume, if there are several.
     pub(in crate::dialect) main: String,
-    /// For the head of files.
+    /// Comment for the head of files.
     pub(in crate::dialect) comment: String,
-    /// What the cell must supply, in lines.
+    /// What the cell must supply, as comment lines.
     pub(in crate::dialect) supplies: Vec<String>,
     pub(in crate::dialect) program: ProgramSettings,
     pub(in crate::dialect) process: Process,
-    /// mm/s
+    /// Travel speed, mm/s.
     pub(in crate::dialect) travel_speed: f64,
     pub(in crate::dialect) lines: Lines,
     pub(in crate::dialect) values: Values,
@@ -74,15 +74,15 @@ pub(in crate::dialect) struct Frame {
     pub(in crate::dialect) feed: f64,
     /// Number of layers.
     pub(in crate::dialect) layers: usize,
-    /// Digits of the numbers of layers in names.
+    /// Digits of layer numbers in names.
     pub(in crate::dialect) digits: usize,
-    /// What has been written of each volume, where the controller's memory may be too small for the whole program.
+    /// The size of each volume, if the controller's memory may be too small for the whole program.
     pub(in crate::dialect) volumes: Option<Volumes>,
 }
 
 impl Frame {
-    /// The frame of a job with the name that the program has in the language; comments of files have at most `width` characters
-    /// a line.
+    /// The frame of a job; `name` is the name of the program in the language, `width` the most characters of a comment
+    /// line.
     pub(in crate::dialect) fn new(job: &Job<'_>, name: String, width: usize, section: &dyn Section) -> Self {
         Self {
             values: Values::new(&name, job),
@@ -116,14 +116,14 @@ pub(in crate::dialect) struct Part {
     pub(in crate::dialect) layer: usize,
     /// Top of the layer, mm.
     pub(in crate::dialect) z: f64,
-    /// Whether the layer begins with it.
+    /// Whether it is the first part of its layer.
     pub(in crate::dialect) first: bool,
-    /// Whether the layer ends with it.
+    /// Whether it is the last part of its layer.
     pub(in crate::dialect) last: bool,
 }
 
-/// Part of a program that is left out where the program begins at a later pass. Each has a number; those below the number to
-/// begin at are left out.
+/// Part of a program that is skipped if the program begins at a later pass. Each has a number; those below the number
+/// at which to begin are skipped.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::dialect) enum Skippable {
     LayerStart(usize),
@@ -144,15 +144,15 @@ impl Skippable {
 pub(in crate::dialect) struct Piece {
     /// Tool point, mm.
     pub(in crate::dialect) to: DVec3,
-    /// The circle along which it moves there.
+    /// The circle along which it moves there; `None` for a straight move.
     pub(in crate::dialect) circle: Option<Circle>,
-    /// mm/s
+    /// Speed, mm/s.
     pub(in crate::dialect) speed: f64,
     /// Whether the pass ends here, with an exact stop.
     pub(in crate::dialect) last: bool,
 }
 
-/// How a language writes what the frame asks for.
+/// How a language writes the elements of the frame.
 pub(in crate::dialect) trait Syntax: Send {
     /// The text of a layer, or of the main program.
     type Text;
@@ -161,12 +161,12 @@ pub(in crate::dialect) trait Syntax: Send {
 
     fn frame_mut(&mut self) -> &mut Frame;
 
-    /// The most characters that the program's name can have; `digits` are those of the layers' numbers.
+    /// Most characters of the program's name; `digits` is the number of digits in layer numbers.
     fn longest_name(&self, _digits: usize) -> usize {
         usize::MAX
     }
 
-    /// The most moves in one part of a layer.
+    /// Most moves in one part of a layer.
     fn most_moves(&self) -> usize {
         usize::MAX
     }
@@ -196,17 +196,17 @@ pub(in crate::dialect) trait Syntax: Send {
     /// A line of the profile.
     fn line(&mut self, text: &mut Self::Text, line: &str);
 
-    /// Waits until the torch stands still, in languages that run ahead of it.
+    /// Waits until the torch stands still, in languages that execute ahead of it.
     fn settle(&mut self, _text: &mut Self::Text) {}
 
-    /// Begins a part that is left out where the program begins later. Only programs that can begin at any pass ask for this and
-    /// for the next three.
+    /// Begins a part that is skipped if the program begins later. Only programs that can begin at any pass use this and
+    /// the next three.
     fn begin_skippable(&mut self, text: &mut Self::Text, what: Skippable);
 
     fn end_skippable(&mut self, text: &mut Self::Text);
 
-    /// A program that begins at the pass with this number comes to a point above it from anywhere; up to
-    /// [`end_way`](Syntax::end_way) follows how others come there.
+    /// A program that begins at the pass with this number moves to a point above it from anywhere; then, up to
+    /// [`end_way`](Syntax::end_way), comes the path by which others get there.
     fn begin_way(&mut self, text: &mut Self::Text, number: usize, above: DVec3);
 
     fn end_way(&mut self, text: &mut Self::Text) {
@@ -216,8 +216,8 @@ pub(in crate::dialect) trait Syntax: Send {
     /// Sets the attitude of torch and table from here on.
     fn stand(&mut self, _attitude: Attitude) {}
 
-    /// Writes an instruction that a package of the controller carries out instead of the lines of the profile; false for one that
-    /// it leaves to them.
+    /// Writes an instruction that a package of the controller carries out instead of the lines of the profile; false if
+    /// it leaves the instruction to them.
     fn by_package(&mut self, _text: &mut Self::Text, _moves: &[Instruction], _at: usize) -> bool {
         false
     }
@@ -302,7 +302,7 @@ impl<S: Syntax> Writer for S {
     }
 }
 
-/// A part of a layer and its call; one that does not fit in the volume begins another.
+/// Writes a part of a layer and its call; a part that does not fit in the volume begins another one.
 fn add<S: Syntax>(syntax: &mut S, part: &Part, moves: &[Instruction]) -> Vec<Chunk> {
     let call = syntax.name_of(part).len() + CALL;
     let (mut chunks, mut all) = (syntax.part(part, moves), Vec::new());
@@ -329,7 +329,7 @@ fn begin_main<S: Syntax>(syntax: &mut S) -> Vec<Chunk> {
     chunks
 }
 
-/// Bytes of some files.
+/// Total bytes of some files.
 fn size(chunks: &[Chunk]) -> usize {
     chunks.iter().map(|chunk| chunk.text.len()).sum()
 }
@@ -352,7 +352,7 @@ pub(in crate::dialect) fn routines<S: Syntax>(syntax: &mut S, text: &mut S::Text
     lines(syntax, text, |lines| &lines.routines);
 }
 
-/// What a part of a layer does.
+/// The body of a part of a layer.
 pub(in crate::dialect) fn body<S: Syntax>(syntax: &mut S, text: &mut S::Text, part: &Part, moves: &[Instruction]) {
     let number = syntax.frame().values.last_number();
     if part.first {
@@ -379,7 +379,7 @@ fn standing<S: Syntax>(syntax: &mut S, text: &mut S::Text, of: fn(&Lines) -> &[S
     }
 }
 
-/// Lines that are left out where the program begins later.
+/// Lines that are skipped if the program begins later.
 fn skippable<S: Syntax>(syntax: &mut S, text: &mut S::Text, what: Skippable, lines: &[String]) {
     if lines.is_empty() {
         return;
@@ -435,7 +435,7 @@ fn begin_pass<S: Syntax>(syntax: &mut S, text: &mut S::Text, pass: usize, above:
     }
 }
 
-/// The torch is above the start of the pass, whichever way it came.
+/// The torch is above the start of the pass, by whichever path.
 fn above<S: Syntax>(syntax: &mut S, text: &mut S::Text) {
     if syntax.frame().program.restart {
         syntax.end_way(text);

@@ -1,4 +1,4 @@
-//! Writing a program: what all dialects share.
+//! Writing a program: the common part of all dialects.
 //!
 //! A writer does no I/O: it returns [`Chunk`]s, text to be appended to a named file, layer by layer.
 
@@ -47,33 +47,33 @@ impl Chunk {
 
 /// Writes a program in one dialect.
 pub trait Writer: Send {
-    /// What comes before the first layer; `layers` is their number.
+    /// The text before the first layer; `extent` is that of the part.
     fn begin(&mut self, extent: &Extent) -> Vec<Chunk>;
 
     /// One layer.
     fn layer(&mut self, program: &LayerProgram) -> Vec<Chunk>;
 
-    /// What comes after the last layer; the torch is clear of the part.
+    /// The text after the last layer; the torch is clear of the part.
     fn end(&mut self) -> Vec<Chunk>;
 
-    /// Whether the controller swings the torch by itself where the job weaves; otherwise it is written as moves.
+    /// Whether the controller weaves by itself if the job weaves; otherwise the weave is written as moves.
     fn weaves(&self) -> bool {
         false
     }
 
-    /// What people must know about the finished program: sentences.
+    /// Remarks about the finished program, as sentences.
     fn notes(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Why the program is not complete, if something went wrong meanwhile; none of it may then be used.
-    /// [Users' own dialects](crate::dialect::own) can fail once they have begun, and so can controls that cannot jump far enough.
+    /// Why the program is incomplete, if something went wrong while writing; none of it may then be used. [User-defined
+    /// dialects](crate::dialect::own) can fail once they have begun, and so can controls that cannot jump far enough.
     fn failure(&self) -> Option<DialectError> {
         None
     }
 }
 
-/// What is to be written: everything that a dialect needs to know besides the layers.
+/// What is to be written: everything that a dialect needs besides the layers.
 #[derive(Debug, Clone)]
 pub struct Job<'a> {
     /// Name of the part; files and modules are named after it.
@@ -94,9 +94,9 @@ pub struct Job<'a> {
     pub program: &'a ProgramSettings,
     /// What the cell must supply.
     pub safety: &'a Safety,
-    /// How the torch swings along a pass, if it does.
+    /// The weave along a pass, if any.
     pub weave: Option<&'a Weave>,
-    /// Whether the program only moves: arc, gas and wire never on.
+    /// Whether the program only moves, with arc, gas and wire always off.
     pub dry_run: bool,
 }
 
@@ -106,7 +106,7 @@ impl Job<'_> {
         Programmer::of(&self.weld, self.program, self.dry_run).woven(self.weave.filter(|_| !weaves))
     }
 
-    /// How the torch swings where a controller does it along with the arc: a dry run has none.
+    /// The weave, if the controller performs it along with the arc; a dry run has none.
     pub(super) fn weave(&self) -> Option<Weave> {
         self.weave.filter(|_| !self.dry_run).cloned()
     }
@@ -116,7 +116,7 @@ impl Job<'_> {
         format!("{}, {}", ascii(&self.part), ascii(&self.profile))
     }
 
-    /// Comments of at most this many characters that say what the cell must supply.
+    /// Comments of at most `width` characters that say what the cell must supply.
     pub(super) fn supplies(&self, width: usize) -> Vec<String> {
         let sentences = self.safety.supplies.iter().flat_map(|text| wrapped(text, width));
         let head = (!self.safety.supplies.is_empty()).then(|| "The cell must supply:".to_owned());
@@ -148,7 +148,7 @@ pub enum DialectError {
         key: String,
         /// What needs it.
         why: String,
-        /// What to write, or what to do without.
+        /// What to write, or what to leave out.
         remedy: String,
     },
     /// The dialect cannot do what the profile asks for.
@@ -161,7 +161,7 @@ pub enum DialectError {
         /// What to do.
         remedy: &'static str,
     },
-    /// Two programs would be in one file.
+    /// Two programs would be written to one file.
     #[error(
         "the posts \"{first}\" and \"{second}\" would both write {file}. Ask for one of them, or give them different extensions."
     )]
@@ -219,7 +219,7 @@ fn check_axes(dialect: &'static Dialect, program: &ProgramSettings) -> Result<()
 /// The key of a positioner.
 const POSITIONER: &str = "program.positioner";
 
-/// The key of what turns the part; `None` where nothing does.
+/// The key of the axes that turn the part; `None` if there are none.
 fn turning_key(program: &ProgramSettings) -> Option<&'static str> {
     let keys = [
         (program.positioner.is_some(), POSITIONER),
@@ -229,7 +229,7 @@ fn turning_key(program: &ProgramSettings) -> Option<&'static str> {
     keys.into_iter().find(|(is_set, _)| *is_set).map(|(_, key)| key)
 }
 
-/// Begins a program in the dialect with this name.
+/// A writer for a program in the dialect with this name.
 ///
 /// # Errors
 /// [`DialectError`] when there is no such dialect, the profile lacks its section, or the job asks for more than it can
@@ -260,7 +260,7 @@ pub fn write<L: Borrow<Layer>>(
     write_with(writer(name, job)?, &Extent::of(layers), layers, job)
 }
 
-/// The same with a writer, and with what is known of the part: [`write()`] knows only its passes.
+/// The same with a given writer, and with the part's extent: [`write()`] takes that of its passes.
 ///
 /// # Errors
 /// [`DialectError`] of the writer.
@@ -284,13 +284,13 @@ pub fn write_with<L: Borrow<Layer>>(
     writer.failure().map_or(Ok(files), Err)
 }
 
-/// A wait split into pieces of at most `most`, the longest that a controller accepts at once, s.
+/// A wait, s, split into pieces of at most `most`, the longest that a controller accepts at once.
 pub(super) fn waits(seconds: f64, most: f64) -> impl Iterator<Item = f64> {
     let count = (seconds / most).ceil().max(1.0);
     (0..count as usize).map(move |i| (seconds - i as f64 * most).min(most))
 }
 
-/// The words of a text in lines of at most this many characters; only a longer word makes a longer line.
+/// The words of a text in lines of at most `width` characters; only a longer word makes a longer line.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

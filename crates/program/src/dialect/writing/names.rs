@@ -1,5 +1,5 @@
-//! Names of programs. No program may have the name of a word of the language or of one of the controller's own programs;
-//! one list serves all dialects, since a part is often programmed for more than one robot.
+//! Program names. A program must not have the name of a keyword or of one of the controller's own programs; one list
+//! serves all dialects, since a part is often programmed for more than one robot.
 
 /// Words of KRL and of KUKA's own modules.
 const KRL: &str = "\

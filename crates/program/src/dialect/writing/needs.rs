@@ -1,11 +1,10 @@
-//! Refuses, with an explanation, a job that asks more of a dialect's templates than they can do, so that no writer has
-//! to.
+//! Refuses, with an explanation, a job that needs more than a dialect's templates can do, so that no writer has to.
 
 use super::{DialectError, Job};
 use crate::dialect::Templates;
 use bead_plan::process::Follow;
 
-/// Refuses a job that asks for more than the lines of a section can do; `example` shows how they may set the wire feed.
+/// Refuses a job that needs more than the lines of a section can do; `example` shows how they may set the wire feed.
 pub(in crate::dialect) fn lines(
     dialect: &'static str,
     templates: &Templates<'_>,

@@ -1,18 +1,18 @@
 //! The tool's orientation turned about the torch's own axis and leaning with it, as each robot writes it.
 //!
-//! The tool's z axis runs along the wire, out of the torch. A torch angle turns counter-clockwise as seen from behind
-//! the torch, with z pointing away from the viewer: for a torch straight down that is counter-clockwise seen from
-//! above, as `robot` counts it. What does not turn leaves the numbers of the profile unchanged, to the last digit.
+//! The tool's z axis runs along the wire, out of the torch. A positive torch angle turns counter-clockwise as seen from
+//! behind the torch, with z pointing away from the viewer: for a torch pointing straight down that is counter-clockwise
+//! seen from above, as in `robot`. Without a turn, the numbers of the profile are unchanged, to the last digit.
 
 use crate::program::Attitude;
 use glam::{DMat3, DQuat, DVec3, EulerRot};
 
-/// What turns a tool.
+/// A rotation of the tool.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::dialect) enum Turn {
     /// About the torch's own axis, °.
     Torch(f64),
-    /// As a move requires.
+    /// As required by a move.
     Attitude(Attitude),
 }
 

@@ -81,7 +81,7 @@ impl Values {
         self.set("job", self.process.at_layer(layer.index).job);
     }
 
-    /// Sets the pass and returns its number among all passes, at which a program may begin.
+    /// Sets the pass and returns its number for `program.restart`.
     pub(in crate::dialect) fn set_pass(&mut self, pass: usize) -> usize {
         let number = restart::number(self.layer, pass);
         self.set("pass", pass);
@@ -89,7 +89,7 @@ impl Values {
         number
     }
 
-    /// The number up to which the layer has something to do.
+    /// The number up to which the layer has something to weld.
     pub(in crate::dialect) fn last_number(&self) -> usize {
         restart::number(self.layer, usize::MAX)
     }

@@ -2,7 +2,7 @@
 
 use crate::program::Instruction;
 
-/// Cuts between passes, where the torch is above the part, into consecutive parts of at most `most` (over 0)
+/// Cuts between passes, where the torch is above the part, into consecutive parts of at most `most` (above 0)
 /// instructions; only a longer pass makes a longer part.
 pub(in crate::dialect) fn passes(instructions: &[Instruction], most: usize) -> Vec<&[Instruction]> {
     let (mut parts, mut start, mut between) = (Vec::new(), 0, 0);

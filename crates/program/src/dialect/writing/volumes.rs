@@ -1,19 +1,19 @@
-//! Programs too large for a controller's memory, in volumes: each is a main program of its own with its modules, and they
+//! Programs too large for a controller's memory, in volumes: each is a separate main program with its modules, and they
 //! are loaded and run one after another.
 
 use crate::program::Instruction;
 
-/// What has been written of each volume.
+/// The sizes of the volumes.
 #[derive(Debug, Clone)]
 pub(in crate::dialect) struct Volumes {
     /// The language, and the extension of main programs.
     language: &'static str,
     extension: &'static str,
-    /// The most that a volume may hold, bytes.
+    /// Most bytes of a volume.
     most: usize,
     /// Size of the current one, bytes.
     size: usize,
-    /// Whether the current one has a module.
+    /// Whether the current one has a module yet.
     begun: bool,
     /// Names of the main programs.
     names: Vec<String>,
@@ -47,7 +47,7 @@ impl Volumes {
         !self.begun || self.size + bytes <= self.most
     }
 
-    /// Adds the text of what every volume has: the head and the end of its main program.
+    /// Adds the text that every volume has: the head and the end of its main program.
     pub(in crate::dialect) fn add_frame(&mut self, bytes: usize) {
         self.size += bytes;
         self.total += bytes;
@@ -60,7 +60,7 @@ impl Volumes {
         self.begun = true;
     }
 
-    /// What people must know about them, if there are several, or if one is larger than it may be.
+    /// A remark about the volumes, if there are several, or if one exceeds the limit.
     pub(in crate::dialect) fn note(&self) -> Option<String> {
         let Self { language, extension, .. } = self;
         let megabytes = |bytes: usize| bytes as f64 / MEGABYTE;
@@ -82,8 +82,8 @@ impl Volumes {
     }
 }
 
-/// The instructions with which a volume begins: the machine moves from anywhere to above the start of the first pass, and
-/// down to it.
+/// The instructions at the beginning of a volume: the machine moves from anywhere to above the start of the first pass,
+/// and down to it.
 pub(in crate::dialect) fn from_anywhere(instructions: &[Instruction]) -> Vec<Instruction> {
     let way = instructions.iter().position(|i| matches!(i, Instruction::Above)).unwrap_or(0);
     let come = |(i, instruction): (usize, &Instruction)| match *instruction {
