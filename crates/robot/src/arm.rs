@@ -1,12 +1,13 @@
-//! An arm that can be moved, whatever its geometry: angles in ° as its maker shows them, lengths in mm.
+//! An arm that can be moved, whatever its geometry: joint angles in ° as its maker's controller displays them, lengths
+//! in mm.
 
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
 
-/// Angles of the six joints, °, as the robot's maker shows them.
+/// Angles of the six joints, °, as the maker's controller displays them.
 pub type Joints = [f64; 6];
 
-/// A place and a direction: transforms are named `base_from_tool`.
+/// A position and a rotation: transforms are named `base_from_tool`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Frame {
     /// Origin, mm.
@@ -19,7 +20,7 @@ impl Frame {
     /// The frame in which it is given.
     pub const IDENTITY: Self = Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
 
-    /// `inner` is given in this frame; returns it in the frame in which this one is given.
+    /// `inner` is given in this frame; returns it in this frame's own reference frame.
     pub fn then(&self, inner: &Self) -> Self {
         Self { position: self.apply(inner.position), rotation: (self.rotation * inner.rotation).normalize() }
     }
@@ -39,7 +40,7 @@ impl Frame {
         Self { position: rotation * -self.position, rotation }
     }
 
-    /// A point given in this frame, mm; returns it in the frame in which this one is given.
+    /// A point given in this frame, mm; returns it in this frame's own reference frame.
     pub fn apply(&self, point: DVec3) -> DVec3 {
         self.position + self.rotation * point
     }
@@ -50,7 +51,7 @@ impl Frame {
 pub struct Branch(u8);
 
 impl Branch {
-    /// How many there are.
+    /// Number of branches.
     pub const COUNT: usize = 8;
 
     /// The branch with this number.
@@ -68,7 +69,7 @@ impl Branch {
         self.0.into()
     }
 
-    /// Words for people.
+    /// Its name in words.
     pub fn name(self) -> String {
         let word = |bit: u8, no: &'static str, yes: &'static str| if self.0 & bit == 0 { no } else { yes };
         format!(
@@ -83,21 +84,21 @@ impl Branch {
 /// How far a pose is from limits and singularities, °; negative where a limit is exceeded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Margins {
-    /// To the nearer limit of each joint.
+    /// Distance of each joint to its nearer limit, °.
     pub limits: [f64; 6],
-    /// Of joint 5 to the angle at which axes 4 and 6 coincide.
+    /// Distance of joint 5 from the angle at which axes 4 and 6 coincide, °.
     pub wrist: f64,
-    /// Of the elbow to a straight or folded arm.
+    /// Distance of the elbow from a straight or folded arm, °.
     pub elbow: f64,
 }
 
 impl Margins {
-    /// The least of all.
+    /// The least of all margins, °.
     pub fn least(&self) -> f64 {
         self.limits.iter().copied().fold(self.wrist.min(self.elbow), f64::min)
     }
 
-    /// The joint that is nearest to a limit or beyond, from 0, and its margin.
+    /// The joint (from 0) that is nearest to a limit or farthest beyond one, and its margin, °.
     ///
     /// ```
     /// use bead_robot::Cell;
@@ -115,17 +116,17 @@ impl Margins {
 
 /// The geometry of an arm: forward and inverse kinematics without limits.
 pub(crate) trait Model: std::fmt::Debug + Send + Sync {
-    /// The flange for finite angles of the joints, °.
+    /// The frame of the flange for finite joint angles, °.
     fn forward(&self, joints: &Joints) -> Frame;
-    /// All ways to put the flange there, each joint in any of its turns.
+    /// All joint angles, °, that put the flange there, each joint in any of its turns.
     fn inverse(&self, base_from_flange: &Frame) -> Vec<Joints>;
     /// Foot, axis 2, axis 3 and wrist, mm from the foot.
     fn links(&self, joints: &Joints) -> [DVec3; 4];
-    /// The branch that the arm is in.
+    /// The branch of these joint angles.
     fn branch(&self, joints: &Joints) -> Branch;
     /// How far the wrist and the elbow are from their singular angles, °.
     fn singular_margins(&self, joints: &Joints) -> [f64; 2];
-    /// How far the wrist lies beyond what the arm can reach, or short of it, mm; 0 where it can get there.
+    /// How far the wrist lies outside the arm's reach, or inside its inner limit, mm; 0 if it can get there.
     fn beyond(&self, base_from_flange: &Frame) -> f64;
     /// Greatest distance of the wrist from axis 2, mm.
     fn reach(&self) -> f64;
@@ -146,18 +147,18 @@ impl Arm {
         Self { limits, speeds, model }
     }
 
-    /// The flange for finite angles of the joints, °.
+    /// The frame of the flange for finite joint angles, °.
     pub fn forward(&self, joints: &Joints) -> Frame {
         self.model.forward(joints)
     }
 
-    /// Foot, axis 2, axis 3 and wrist for angles of the joints, °; mm from the foot.
+    /// Foot, axis 2, axis 3 and wrist for these joint angles, °; mm from the foot.
     pub fn links(&self, joints: &Joints) -> [DVec3; 4] {
         self.model.links(joints)
     }
 
-    /// All ways to put the flange there, including those beyond a limit. Of a joint's angles that differ by whole
-    /// turns, the one nearest to the middle of its range is returned.
+    /// All joint angles, °, that put the flange there, including those beyond a limit. Of a joint's angles that differ
+    /// by whole turns, the one nearest to the middle of its range is returned.
     ///
     /// ```
     /// use bead_robot::Cell;
@@ -179,7 +180,7 @@ impl Arm {
         self.model.inverse(base_from_flange).into_iter().map(solution).collect()
     }
 
-    /// Distance to limits, wrist singularity and straight arm.
+    /// Distances from limits, wrist singularity and straight arm, °.
     pub fn margins(&self, joints: &Joints) -> Margins {
         let mut limits = [0.0; 6];
         for ((margin, joint), [low, high]) in limits.iter_mut().zip(joints).zip(self.limits) {
@@ -189,7 +190,7 @@ impl Arm {
         Margins { limits, wrist, elbow }
     }
 
-    /// How far the wrist lies beyond what the arm can reach, or short of it, mm; 0 where it can get there.
+    /// How far the wrist lies outside the arm's reach, or inside its inner limit, mm; 0 if it can get there.
     pub fn beyond(&self, base_from_flange: &Frame) -> f64 {
         self.model.beyond(base_from_flange)
     }
@@ -200,12 +201,12 @@ impl Arm {
     }
 }
 
-/// How far an angle with this sine is from 0° or 180°, °.
+/// Distance of an angle with this sine from 0° or 180°, °.
 pub(crate) fn from_zero(sine: f64) -> f64 {
     sine.abs().min(1.0).asin().to_degrees()
 }
 
-/// `angle` plus the whole turns that bring it nearest to `near`, °.
+/// `angle` plus as many whole turns as bring it nearest to `near`, °.
 pub(crate) fn turned_near(angle: f64, near: f64) -> f64 {
     angle - ((angle - near) / 360.0).round() * 360.0
 }

@@ -9,7 +9,7 @@ use bead_part::text::toml::line_of_key;
 use serde::Deserialize;
 use std::sync::Arc;
 
-/// The keys of `[arm]` as they are written in a cell.
+/// The keys of `[arm]` as written in a cell.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub(crate) struct ArmKeys {
@@ -81,7 +81,7 @@ impl ArmKeys {
         Ok(ArmTable { shape, limits, speeds: speeds.ok_or(Wrong::Missing("speeds"))? })
     }
 
-    /// Refuses keys of other kinds of arm.
+    /// Refuses keys that belong to other kinds of arm.
     fn alone(&self, own: &[&str]) -> Result<(), Wrong> {
         let set = [
             ("a1", self.a1.is_some()),

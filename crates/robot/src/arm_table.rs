@@ -5,7 +5,7 @@ use crate::chain::Chain;
 use crate::opw::{Lengths, Opw};
 use std::sync::Arc;
 
-/// A value of a cell with its range: key, value, least, greatest, unit.
+/// The range of a value in a cell: key, value, least, greatest, unit.
 pub(crate) type Range = (&'static str, f64, f64, f64, &'static str);
 
 /// An arm with its limits.
@@ -45,11 +45,13 @@ pub struct OpwTable {
     pub c3: f64,
     /// From the wrist to the flange, mm.
     pub c4: f64,
-    /// What each joint shows when the arm points straight up, with its sign: model angle = sign × shown − offset, °.
+    /// Displayed angle of each joint when the arm points straight up, times its sign: model angle = sign × displayed −
+    /// offset, °.
     pub offsets: Joints,
-    /// 1 where the maker's positive direction is that of the model, −1 where not.
+    /// 1 if the maker's positive direction is that of the model, −1 otherwise.
     pub signs: [i8; 6],
-    /// Whether joint 3 is driven through a parallelogram, so that it shows the forearm's angle to the floor.
+    /// Whether joint 3 is driven through a parallelogram, so that its displayed angle is the forearm's angle to the
+    /// floor.
     pub parallelogram: bool,
 }
 
@@ -72,7 +74,7 @@ impl ArmTable {
         ranges
     }
 
-    /// The first impossible value, its key, and why.
+    /// The first impossible value: its key, the value, and why.
     pub(crate) fn first_broken(&self) -> Option<(&'static str, String, String)> {
         let signs = match &self.shape {
             Shape::Opw(table) => table.signs,

@@ -1,10 +1,10 @@
-//! What takes up room: arm and torch as capsules.
+//! Arm and torch as capsules, for collision checks.
 
 use crate::arm::{Arm, Frame, Joints};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// How thick the arm is, and how large the table: a section of a cell. Lengths in mm.
+/// Thickness of the arm and size of the table: a section of a cell. Lengths in mm.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
@@ -22,7 +22,7 @@ pub struct Body {
     pub stick_out: f64,
     /// Size of the table along the part's x and y, about the part's origin and level with it, mm.
     pub table: [f64; 2],
-    /// Clamps, vices, jaws and whatever else stands on the table and turns with it; default none.
+    /// Clamps, vices, jaws and other boxes on the table that turn with it; default none.
     #[serde(default)]
     pub fixtures: Vec<Fixture>,
 }
@@ -37,7 +37,7 @@ pub struct Fixture {
     pub high: [f64; 3],
 }
 
-/// Something that may be hit.
+/// A body that may collide.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Solid {
@@ -53,14 +53,14 @@ pub enum Solid {
     Base,
     /// The table, down to the floor.
     Table,
-    /// The part, as far as it is welded.
+    /// The part as welded so far.
     Part,
     /// Something that holds the part.
     Fixture,
 }
 
 impl Solid {
-    /// The word for people.
+    /// Its name in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Torch => "the torch",
@@ -78,7 +78,7 @@ impl Solid {
 /// A line with a thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Capsule {
-    /// What it represents.
+    /// The body that it represents.
     pub solid: Solid,
     /// Its two ends, mm.
     pub ends: [DVec3; 2],
@@ -86,7 +86,7 @@ pub struct Capsule {
     pub radius: f64,
 }
 
-/// Arm and torch for angles of the joints, °: in the robot's frame, moved by `part_from_base`.
+/// Arm and torch for joint angles, °, as capsules in the robot's frame, transformed by `part_from_base`.
 pub fn capsules(
     arm: &Arm,
     body: &Body,
@@ -99,12 +99,12 @@ pub fn capsules(
     let Body { base, upper_arm, forearm, hand, torch, stick_out, .. } = *body;
     let tip = flange_from_tool.position;
     let along = flange_from_tool.rotation * DVec3::Z;
-    // The neck bends where the wire's line is nearest to the flange's axis; a straight torch has its whole length there.
+    // The neck bends where the wire's line is nearest to the flange's axis; a straight torch has its full length there.
     let (sideways, bent) = (along.truncate(), along.truncate().length_squared());
     let back = if bent > 1e-6 { tip.truncate().dot(sideways) / bent } else { tip.z };
     let neck = tip - along * back.clamp(0.0, tip.length());
     let nozzle = tip - along * (stick_out + torch).min(tip.distance(neck));
-    // Capsules are round at their ends, links are not: the forearm ends at the wrist, the torch begins at the flange.
+    // Capsules have round ends, links do not: the forearm ends at the wrist, the torch begins at the flange.
     let shortened = |from: DVec3, to: DVec3, by: f64| to - (to - from).normalize_or_zero() * by.min(from.distance(to));
     let capsule = |solid, from: DVec3, to: DVec3, radius| Capsule {
         solid,

@@ -1,4 +1,4 @@
-//! Cells: an arm with its torch and the place of the part, as a TOML file people can edit.
+//! Cells: an arm with its torch and the position of the part, as a TOML file that people can edit.
 
 use crate::arm::{Arm, Frame};
 use crate::arm_keys::ArmKeys;
@@ -23,7 +23,7 @@ pub const BUILT_IN: [(&str, &str); 8] = [
     ("ur10e", include_str!("../cells/ur10e.toml")),
 ];
 
-/// An arm, its torch and the place of the part; with the arm's keys while it is being read.
+/// An arm, its torch and the position of the part; with the arm's keys while it is being read.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cell<A = ArmTable> {
@@ -35,7 +35,7 @@ pub struct Cell<A = ArmTable> {
     pub arm: A,
     /// Tool frame on the flange.
     pub torch: Torch,
-    /// Frame of the part in the robot's; on a turn table, with the table at 0°.
+    /// Frame of the part in that of the robot; on a turn table, with the table at 0°.
     pub part: PartPlace,
     /// Linear axis on which the robot stands; optional.
     #[serde(default)]
@@ -43,10 +43,10 @@ pub struct Cell<A = ArmTable> {
     /// Turn table that carries the part; optional.
     #[serde(default)]
     pub table: Option<Table>,
-    /// Where programs begin and end; optional, without it the moves from and to home are not checked.
+    /// Where programs begin and end; optional: without it the moves from and to home are not checked.
     #[serde(default)]
     pub home: Option<Home>,
-    /// How thick the arm is, and how large the table; optional, without it no collisions are checked.
+    /// Thickness of the arm and size of the table; optional: without it collisions are not checked.
     #[serde(default)]
     pub body: Option<Body>,
 }
@@ -61,7 +61,7 @@ pub struct Torch {
     pub rotation: [f64; 3],
 }
 
-/// Where the origin of the part lies, seen from the foot of the robot.
+/// Position of the part's origin relative to the foot of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PartPlace {
@@ -75,9 +75,10 @@ pub struct PartPlace {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LinearAxis {
-    /// The direction in which the robot's foot moves as the axis value grows, in the robot's own x, y and z; of any length.
+    /// The direction in which the robot's foot moves as the axis value increases, in the robot's x, y and z; of any
+    /// length.
     pub direction: [f64; 3],
-    /// Least and greatest position, mm. What the cell says of part and table holds with the axis at 0.
+    /// Least and greatest position, mm. Part and table are given with the axis at 0.
     pub limits: [f64; 2],
 }
 
@@ -85,9 +86,9 @@ pub struct LinearAxis {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
-    /// Where its axis is, seen from the foot of the robot: x and y, mm.
+    /// Position of its axis relative to the foot of the robot: x and y, mm.
     pub axis: [f64; 2],
-    /// 1 where its positive direction is counter-clockwise seen from above, −1 where not.
+    /// 1 if its positive direction is counter-clockwise seen from above, −1 otherwise.
     pub direction: i8,
     /// Least and greatest angle, °.
     pub limits: [f64; 2],
@@ -145,7 +146,7 @@ impl Cell {
         Self::parse_with(text, |_| Err("only cells that are files can name another file.".to_owned()))
     }
 
-    /// Reads a cell; `read` gives the text of the URDF file that it names, or a reason why not.
+    /// Reads a cell; `read` returns the text of the URDF file that it names, or a reason why not.
     ///
     /// # Errors
     /// [`CellError`] with the line.
@@ -166,7 +167,7 @@ impl Cell {
     /// The same cell with the arm of a URDF file.
     ///
     /// # Errors
-    /// [`CellError::Urdf`] where the file is not understood, or its arm is of a kind that cannot be walked.
+    /// [`CellError::Urdf`] if the file is not understood, or its arm is of an unsupported kind.
     pub fn with_urdf(self, text: &str) -> Result<Self, CellError> {
         Ok(Self { arm: urdf::read(text, &urdf::Ends::default())?, ..self })
     }
@@ -215,7 +216,7 @@ impl Cell {
                 ranges.extend(fixture.high.map(|v| ("body.fixtures.high", v, -1e5, 1e5, "mm")));
             }
         }
-        // Written so that NaN is out of range too.
+        // Written so that NaN is also out of range.
         if let Some((key, value, low, high, unit)) =
             ranges.into_iter().find(|&(_, v, low, high, _)| !(v >= low && v <= high))
         {
@@ -248,12 +249,12 @@ impl Cell {
 }
 
 impl PartPlace {
-    /// The frame of the part in the robot's.
+    /// The frame of the part in that of the robot.
     pub fn base_from_part(&self) -> Frame {
         Frame { position: DVec3::from(self.position), rotation: DQuat::from_rotation_z(self.rotation.to_radians()) }
     }
 
-    /// The place of the part when the table under it is at that angle, °.
+    /// The position of the part when the table under it is at that angle, °.
     ///
     /// ```
     /// use bead_robot::{PartPlace, Table};
@@ -273,7 +274,7 @@ impl PartPlace {
         Self { position: position.to_array(), rotation: crate::arm::turned_near(self.rotation + turn, 0.0) }
     }
 
-    /// The place in words.
+    /// The position in words.
     pub fn sentence(&self) -> String {
         let [x, y, z] = self.position;
         format!("x {x:.0} y {y:.0} z {z:.0} mm, turned by {:.0}°", self.rotation)

@@ -5,20 +5,20 @@ use crate::linear_axis::{Station, station};
 use crate::table::{TableAngle, turn_table};
 use crate::track::Track;
 
-/// A cell with its external axes at their values for a program.
+/// A cell with its external axes set for a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct External {
-    /// The cell as the robot then sees it.
+    /// The cell as seen by the robot then.
     pub cell: Cell,
-    /// Where the part lies, seen from the robot's foot.
+    /// Position of the part relative to the robot's foot.
     pub place: PartPlace,
-    /// The linear axis under the robot, if there is one from which it reaches the part.
+    /// The position of the linear axis under the robot, if there is one from which the robot reaches the part.
     pub station: Option<Station>,
-    /// The table under the part, likewise.
+    /// The angle of the table under the part, if there is one at which the robot reaches the part.
     pub table: Option<TableAngle>,
 }
 
-/// The best values of a cell's external axes for a part that lies at `place` while they are at 0: first the linear axis
+/// The best values of a cell's external axes for a part that is at `place` with the axes at 0: first the linear axis
 /// under the robot, then the table.
 pub fn external_axes(cell: &Cell, place: PartPlace, track: &Track) -> External {
     let station = station(cell, place, track);

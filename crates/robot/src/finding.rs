@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 pub enum Trouble {
     /// No joint angles put the torch there.
     OutOfReach {
-        /// How far the wrist would have to go beyond the arm's reach (or inside of it), mm; 0 where only the chosen
+        /// Distance by which the wrist is outside the arm's reach (or inside its inner limit), mm; 0 if only the chosen
         /// branch cannot get there.
         beyond: f64,
         /// Greatest distance of the wrist from axis 2, mm.
@@ -46,27 +46,27 @@ pub enum Trouble {
         /// Distance of joint 5 from the angle at which they do, °.
         margin: f64,
     },
-    /// A straight move from home leads to other joint angles than the program was judged with.
+    /// A straight move from home leads to other joint angles than those that were checked for the program.
     Posture {
         /// The joint that differs most, from 0.
         joint: usize,
         /// Angle to which the straight move leads, °.
         angle: f64,
-        /// Angle that was judged, °.
+        /// Angle that was checked, °.
         judged: f64,
     },
     /// Two solids, as capsules, overlap.
     Collision {
-        /// What is hit, and by what.
+        /// The solid that is hit, and the one that hits it.
         solids: [Solid; 2],
-        /// How deep, mm.
+        /// Depth, mm.
         depth: f64,
     },
 }
 
 impl Trouble {
-    /// Whether this keeps the program from being welded. Slower travels, a near singularity and what
-    /// coarse capsules hit are only reported.
+    /// Whether this keeps the program from being welded. Slower travels, near singularities and collisions of coarse
+    /// capsules are only reported.
     pub fn is_fatal(&self) -> bool {
         match self {
             Self::OutOfReach { .. } | Self::Limit { .. } => true,
@@ -88,7 +88,7 @@ impl Trouble {
         }
     }
 
-    /// How bad, in the unit of the kind.
+    /// Severity, in the unit of the kind.
     fn size(&self) -> f64 {
         match *self {
             Self::OutOfReach { beyond, .. } => beyond,
@@ -108,9 +108,9 @@ pub struct ReachFinding {
     pub stop: Stop,
     /// What is wrong there.
     pub trouble: Trouble,
-    /// Where it is worst, and what is wrong there.
+    /// The stop where it is worst, and the trouble there.
     pub worst: (Stop, Trouble),
-    /// Number of stops.
+    /// Number of stops where it occurs.
     pub count: usize,
 }
 
@@ -130,7 +130,7 @@ impl From<&ReachFinding> for Finding {
 }
 
 impl ReachFinding {
-    /// One sentence with place, size and remedy.
+    /// One sentence with position, size and remedy.
     pub fn sentence(&self) -> String {
         let place = place(&self.stop);
         let more = self.more();
@@ -232,7 +232,7 @@ fn place(stop: &Stop) -> String {
     )
 }
 
-/// Troubles gathered along the path.
+/// Troubles, collected along the path.
 #[derive(Debug, Default)]
 pub(crate) struct Findings(BTreeMap<(u8, usize, Leg), ReachFinding>);
 

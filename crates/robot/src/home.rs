@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Home {
-    /// Angles of the joints, °, as the robot's maker shows them.
+    /// Angles of the joints, °, as the maker's controller displays them.
     pub joints: Joints,
-    /// How programs go from there to their first point, and back from their last.
+    /// How programs move from there to their first point, and back from their last.
     pub by: Way,
 }
 
@@ -18,30 +18,30 @@ pub struct Home {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Way {
-    /// The tool point runs straight (LIN, MoveL, L): the arm cannot change its posture.
+    /// The tool point moves in a straight line (LIN, MoveL, L): the arm cannot change its posture.
     Line,
-    /// Every joint turns straight to its angle (PTP, MoveAbsJ, J): singularities do not matter.
+    /// Every joint turns directly to its angle (PTP, MoveAbsJ, J): singularities do not matter.
     Joint,
 }
 
-/// No joint turns farther than this between two stops of a joint move, °.
+/// Greatest turn of a joint between two stops of a joint move, °.
 const JOINT_STEP: f64 = 2.0;
-/// The torch turns no farther than this between two stops of a straight move, °.
+/// Greatest turn of the torch between two stops of a straight move, °.
 const TURN_STEP: f64 = 2.0;
 
-/// What a move passes through.
+/// A move between home and the program.
 pub(crate) struct Move<'a> {
     pub(crate) arm: &'a Arm,
     pub(crate) flange_from_tool: &'a Frame,
     pub(crate) base_from_part: &'a Frame,
     pub(crate) by: Way,
-    /// mm/s
+    /// Speed, mm/s.
     pub(crate) speed: f64,
 }
 
 impl Move<'_> {
-    /// Stops along the move, both ends included, with the angles of the joints and the frame of the flange; `None` where the
-    /// arm cannot get there. They are labelled as `like` is.
+    /// Stops along the move, both ends included, with the joint angles and the frame of the flange; the angles are
+    /// `None` if the arm cannot get there. Stops are labelled as in `like`.
     pub(crate) fn stops(&self, from: Joints, to: Joints, like: Stop) -> Vec<(Stop, Option<Joints>, Frame)> {
         match self.by {
             Way::Joint => self.joint(from, to, like),
@@ -88,14 +88,14 @@ impl Move<'_> {
     }
 }
 
-/// The joint angles that put the flange there with the smallest turns.
+/// The joint angles for this frame of the flange with the smallest turns.
 fn nearest(arm: &Arm, base_from_flange: &Frame, before: &Joints) -> Option<Joints> {
     let near = |(_, joints): (_, Joints)| -> Joints { std::array::from_fn(|j| turned_near(joints[j], before[j])) };
     let turn = |joints: &Joints| (0..6).map(|j| (joints[j] - before[j]).abs()).fold(0.0, f64::max);
     arm.inverse(base_from_flange).into_iter().map(near).min_by(|a, b| turn(a).total_cmp(&turn(b)))
 }
 
-/// The number of steps; no move needs more.
+/// The number of steps, limited to what any move needs.
 fn count(whole: f64, step: f64) -> usize {
     (whole / step).ceil().clamp(1.0, 1e4) as usize
 }

@@ -1,20 +1,22 @@
-//! Can the robot weld this plan? Joint paths, margins, and a better place for the part.
+//! Can the robot weld this plan? Joint paths, margins, and a better position for the part.
 //!
-//! A [`Cell`] is an [`Arm`] (six lengths, a [`Chain`], or a chain from a [URDF](urdf) file) with its torch and the place of the part. [`Track`] turns a plan into the path of the
-//! torch, travels included; [`reach`] walks it with the torch straight down:
+//! A [`Cell`] is an [`Arm`] (six lengths, a [`Chain`], or a chain from a [URDF](urdf) file) with its torch and the
+//! position of the part. [`Track`] turns a plan into the path of the torch, travels included; [`reach`] walks it with
+//! the torch straight down:
 //!
 //! 1. at stations along the path, the margins of all torch angles are computed (`turn.rs`): the torch may be at any
 //!    angle about its own axis, and that freedom keeps joints away from limits;
 //! 2. dynamic programming picks one branch of the arm for the whole program and, of all courses of the torch angle with
 //!    the greatest least margin, the one that turns least;
-//! 3. every point is walked with that course: joint angles, margins, speeds, [findings](finding) (`walk.rs`); before and
-//!    after it the moves from and to home (`home.rs`), where the cell has one;
-//! 4. at every stop the arm and the torch, as capsules, are compared with each other, with the table and the fixtures on it, and
-//!    with the metal laid so far (`room.rs`, `metal.rs`), where the cell says how thick they are. Table, fixtures and metal turn with
-//!    the part.
+//! 3. every point is walked with that course: joint angles, margins, speeds, [findings](finding) (`walk.rs`); before
+//!    and after it the moves from and to home (`home.rs`), if the cell has a home;
+//! 4. at every stop the arm and the torch, as capsules, are checked against each other, the table and its fixtures, and
+//!    the metal laid so far (`room.rs`, `metal.rs`), if the cell gives their thickness. Table, fixtures and metal turn
+//!    with the part.
 //!
-//! A [`Trajectory`] has the joints over time, for simulators. [`suggest()`] searches for a place of the part with greater margins, [`external_axes`]
-//! for the place of the robot on a linear axis and for the angle of a table under the part.
+//! A [`Trajectory`] has the joints over time, for simulators. [`suggest()`] searches for a position of the part with
+//! greater margins; [`external_axes`] for the position of the robot on a linear axis and the angle of a table under the
+//! part.
 //!
 //! Not checked: cables, anything that the cell does not describe, and the dynamics of the load.
 
@@ -59,7 +61,7 @@ pub use walk::{Pose, Reach, Turning, reach};
 
 use glam::DQuat;
 
-/// The tool frame when the torch points straight down over a point of the part, turned by `angle` (°) about its own
+/// The tool frame with the torch pointing straight down over a point of the part, turned by `angle` (°) about its own
 /// axis; at 0 its x axis is the part's.
 ///
 /// ```

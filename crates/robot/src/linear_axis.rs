@@ -1,5 +1,5 @@
-//! A linear axis under the robot (track, carriage): the one place on it, for the whole program, that gives the robot the most
-//! margin.
+//! A linear axis under the robot (track, carriage): the one position, for the whole program, that gives the robot the
+//! greatest margin.
 //!
 //! The controller includes the axis in its kinematics, so the positions in the program stay as they are.
 
@@ -9,27 +9,27 @@ use crate::track::Track;
 use glam::DVec3;
 use serde::Serialize;
 
-/// The greatest number of places that are tried …
+/// Most positions tried …
 const MOST: f64 = 200.0;
 
 /// … at least this far apart, mm.
 const STEP: f64 = 50.0;
 
-/// A robot at one place of its linear axis.
+/// A robot at one position of its linear axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Station {
-    /// What the axis shows, mm: `program.linear_axis`.
+    /// Position of the axis, mm: `program.linear_axis`.
     pub position: f64,
-    /// Where the part lies, seen from the robot's foot there.
+    /// Position of the part relative to the robot's foot there.
     pub place: PartPlace,
     /// Least margin of the points examined, °.
     pub margin: f64,
-    /// Least margin of these points with the axis at 0; none where some are out of reach.
+    /// Least margin of these points with the axis at 0, °; `None` if some are out of reach.
     pub at_zero: Option<f64>,
 }
 
 impl Station {
-    /// The cell as the robot sees it from there: part and table lie elsewhere.
+    /// The cell as seen by the robot from there: part and table are elsewhere.
     pub(crate) fn seen(&self, cell: &Cell) -> Cell {
         let mut cell = cell.clone();
         let Some(axis) = &cell.linear_axis else { return cell };
@@ -43,19 +43,19 @@ impl Station {
 }
 
 impl LinearAxis {
-    /// How far the robot's foot has moved when the axis shows `position`, mm.
+    /// Displacement of the robot's foot at this `position` of the axis, mm.
     fn way(&self, position: f64) -> DVec3 {
         position * DVec3::from(self.direction).normalize_or_zero()
     }
 
-    /// A place as the robot sees it from a position of the axis.
+    /// A part's position as seen by the robot from a position of the axis.
     fn seen(&self, place: PartPlace, position: f64) -> PartPlace {
         PartPlace { position: (DVec3::from(place.position) - self.way(position)).to_array(), ..place }
     }
 }
 
-/// The best place of the robot on its linear axis for a part that lies at `place` while the axis shows 0; `None` without such
-/// an axis, or where no place has all points within reach.
+/// The best position of the robot on its linear axis for a part that is at `place` with the axis at 0; `None` without
+/// such an axis, or if no position has all points within reach.
 pub(crate) fn station(cell: &Cell, place: PartPlace, track: &Track) -> Option<Station> {
     let axis = cell.linear_axis.as_ref()?;
     let [low, high] = axis.limits;

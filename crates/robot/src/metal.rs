@@ -1,19 +1,20 @@
-//! The part as far as it has been welded: balls along its beads, in blocks of space.
+//! The part as welded so far: balls along its beads, in blocks of space.
 
 use crate::body::Capsule;
 use glam::{DVec3, IVec3};
 use std::collections::HashMap;
 
-/// Edge of a voxel, mm; the last bead in each counts, which is the outermost. Depths are right within a millimetre or so.
+/// Edge of a voxel, mm; only the last bead in each counts, which is the outermost. Depths are accurate to a millimetre
+/// or so.
 const VOXEL_MM: f64 = 5.0;
 /// Edge of a block, in voxels.
 const EDGE: i32 = 8;
 
-/// Beads as balls that touch their tops from below, all of one size.
+/// Beads as balls of one size that touch the beads' tops from below.
 pub(crate) struct Metal {
-    /// mm
+    /// Radius of the balls, mm.
     radius: f64,
-    /// Middles of the balls by block and voxel, mm.
+    /// Centres of the balls by block and voxel, mm.
     blocks: HashMap<IVec3, Vec<Option<DVec3>>>,
     low: DVec3,
     high: DVec3,
@@ -25,10 +26,10 @@ impl Metal {
         Self { radius: width / 2.0, blocks: HashMap::new(), low: DVec3::INFINITY, high: DVec3::NEG_INFINITY }
     }
 
-    /// Lays a bead between two places of its top, mm, on layers with these normals.
+    /// Lays a bead between two points on its top, mm, on layers with these normals.
     pub(crate) fn lay(&mut self, places: [DVec3; 2], normals: [DVec3; 2]) {
         let [from, to] = [0, 1].map(|k| places[k] - normals[k] * self.radius);
-        // Balls lie a radius apart; no part needs more.
+        // Balls are at most one radius apart; no part needs more.
         let count = (from.distance(to) / self.radius.max(1e-3)).ceil().clamp(1.0, 1e4) as usize;
         for k in 0..=count {
             self.add(from.lerp(to, k as f64 / count as f64));
@@ -46,7 +47,7 @@ impl Metal {
         (self.low, self.high) = (self.low.min(middle), self.high.max(middle));
     }
 
-    /// How far a capsule is from the metal, mm; below 0 where it is inside, and infinite where it is clear of it.
+    /// Distance of a capsule from the metal, mm; negative if it is inside, infinite if it is far from any.
     pub(crate) fn gap(&self, capsule: &Capsule) -> f64 {
         let reach = capsule.radius + self.radius;
         let [a, b] = capsule.ends;
@@ -66,7 +67,7 @@ impl Metal {
     }
 }
 
-/// Distance of a place from a straight line between two others, mm.
+/// Distance of a point from the line segment between two others, mm.
 fn to_line(place: DVec3, [a, b]: [DVec3; 2]) -> f64 {
     let way = b - a;
     let along = ((place - a).dot(way) / way.length_squared().max(1e-12)).clamp(0.0, 1.0);

@@ -1,7 +1,7 @@
-//! Arms with a spherical wrist by six lengths.
+//! Arms with a spherical wrist, given by six lengths.
 //!
-//! The closed forms are those of Brandstötter, Angerer and Hofbaur (2014), as the crate `rs-opw-kinematics` has them.
-//! That crate works in metres and radians; nothing of it leaves this file.
+//! The closed forms are those of Brandstötter, Angerer and Hofbaur (2014), as implemented in the crate
+//! `rs-opw-kinematics`. That crate works in metres and radians, which stay within this file.
 
 use crate::arm::{Branch, Frame, Joints, Model, from_zero};
 use glam::{DQuat, DVec3};
@@ -12,25 +12,25 @@ use rs_opw_kinematics::parameters::opw_kinematics::Parameters;
 use std::sync::Arc;
 
 const MM_PER_M: f64 = 1e3;
-/// Poses farther out than this are not tried, mm; the library's own tolerance is smaller.
+/// Poses farther out of reach than this are not tried, mm; the library's own tolerance is smaller.
 const BEYOND_MM: f64 = 0.1;
 
 /// Lengths of an arm, mm, named as in the paper.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Lengths {
-    /// Axis 1 forward to axis 2.
+    /// From axis 1 forward to axis 2.
     pub(crate) a1: f64,
-    /// Axis 3 to axis 4.
+    /// From axis 3 to axis 4.
     pub(crate) a2: f64,
-    /// Sideways.
+    /// Sideways offset of the arm.
     pub(crate) b: f64,
-    /// Foot up to axis 2.
+    /// From the foot up to axis 2.
     pub(crate) c1: f64,
     /// Upper arm.
     pub(crate) c2: f64,
     /// Forearm.
     pub(crate) c3: f64,
-    /// Wrist to flange.
+    /// From the wrist to the flange.
     pub(crate) c4: f64,
 }
 
@@ -49,13 +49,14 @@ impl std::fmt::Debug for Opw {
     }
 }
 
-/// What joint 3 of a parallelogram arm shows per degree of joint 2, so that it is the forearm's angle to the floor.
+/// Change of a parallelogram arm's displayed joint 3 per degree of joint 2, which makes it the forearm's angle to the
+/// floor.
 fn coupling(signs: [i8; 6]) -> f64 {
     f64::from(signs[1] * signs[2])
 }
 
 impl Opw {
-    /// An arm; whole turns are dropped from the offsets, °.
+    /// An arm with these offsets, °; whole turns are dropped from them.
     pub(crate) fn new(lengths: Lengths, offsets: Joints, signs: [i8; 6], parallelogram: bool) -> Self {
         let offsets = offsets.map(|v| if v.is_finite() { v % 360.0 } else { 0.0 });
         let m = |mm: f64| mm / MM_PER_M;
@@ -79,7 +80,7 @@ impl Opw {
         Self { lengths, offsets, signs, parallelogram, kinematics }
     }
 
-    /// Axis 3 to the wrist, mm.
+    /// Distance from axis 3 to the wrist, mm.
     fn forearm(&self) -> f64 {
         self.lengths.a2.hypot(self.lengths.c3)
     }

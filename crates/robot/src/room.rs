@@ -1,7 +1,7 @@
-//! Arm and torch among the table and the metal on it: what comes too near to what.
+//! Collision checks of arm and torch with the table and the metal on it.
 //!
-//! Capsules are coarse, and their radii are the cell's: a finding says where to look; a walk without findings proves nothing
-//! about cables, wire feeders and fixtures.
+//! Capsules are coarse, and their radii are those of the cell: a finding says where to look; a walk without findings
+//! proves nothing about cables, wire feeders and fixtures.
 
 use crate::arm::{Arm, Frame, Joints};
 use crate::body::{Body, Capsule, Fixture, Solid, capsules};
@@ -10,29 +10,29 @@ use crate::metal::Metal;
 use crate::track::Stop;
 use glam::{DVec2, DVec3};
 
-/// Two solids that come too near.
+/// Two solids that overlap or come too near.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Contact {
     pub(crate) solids: [Solid; 2],
-    /// How deep they would overlap, mm.
+    /// Depth of the overlap, mm.
     pub(crate) depth: f64,
 }
 
-/// Capsules are compared with table and fixtures at places this far apart, mm.
+/// Capsules are compared with table and fixtures at points this far apart, mm.
 const STEP_MM: f64 = 10.0;
 
-/// Arm, torch, table and part while a program runs.
+/// Arm, torch, table and part during a program.
 pub(crate) struct Room<'a> {
     arm: &'a Arm,
     body: &'a Body,
     flange_from_tool: Frame,
     part_from_base: Frame,
-    /// What has been welded, in the part's frame.
+    /// The metal welded so far, in the part's frame.
     metal: Metal,
 }
 
 impl<'a> Room<'a> {
-    /// A room without metal, for beads of this width, mm; none where the cell has no body.
+    /// Without metal, for beads of this width, mm; `None` if the cell has no body.
     pub(crate) fn new(cell: &'a Cell, arm: &'a Arm, base_from_part: &Frame, bead_width: f64) -> Option<Self> {
         let body = cell.body.as_ref()?;
         Some(Self {
@@ -44,12 +44,12 @@ impl<'a> Room<'a> {
         })
     }
 
-    /// A bead was laid from one stop to another.
+    /// Adds a bead from one stop to another.
     pub(crate) fn lay(&mut self, from: &Stop, to: &Stop) {
         self.metal.lay([from.at, to.at], [from, to].map(|stop| stop.attitude.layer * DVec3::Z));
     }
 
-    /// The deepest contact of each pair of solids, with the table turned like this.
+    /// The deepest contact of each pair of solids, with the table turned by `turned_table`.
     pub(crate) fn contacts(&self, joints: &Joints, turned_table: &Frame) -> Vec<Contact> {
         let part_from_base = turned_table.inverse().then(&self.part_from_base);
         let capsules = capsules(self.arm, self.body, &self.flange_from_tool, joints, &part_from_base);
@@ -78,7 +78,7 @@ impl<'a> Room<'a> {
         found
     }
 
-    /// How far a capsule is from the table, mm; below 0 where it is inside.
+    /// Distance of a capsule from the table, mm; negative if it is inside.
     fn above_table(&self, capsule: &Capsule) -> f64 {
         let [x, y] = self.body.table;
         let half = DVec2::new(x, y) / 2.0;
@@ -90,27 +90,27 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Whether two links move against each other in a joint that keeps them apart.
+/// Whether two solids are neighbours at a joint, which keeps them apart.
 fn joined(a: Solid, b: Solid) -> bool {
     use Solid::{Base, Forearm, Hand, Torch, UpperArm};
     matches!((a, b), (Torch, Torch | Hand) | (Hand, Forearm) | (Forearm, UpperArm) | (UpperArm, Base))
 }
 
-/// How far a capsule is from a fixture, mm; below 0 where it is inside.
+/// Distance of a capsule from a fixture, mm; negative if it is inside.
 fn gap_to(fixture: &Fixture, capsule: &Capsule) -> f64 {
     let [low, high] = [fixture.low, fixture.high].map(DVec3::from);
     let gap = |place: DVec3| (low - place).max(place - high).max(DVec3::ZERO).length() - capsule.radius;
     places(capsule.ends[0], capsule.ends[1]).into_iter().map(gap).fold(f64::INFINITY, f64::min)
 }
 
-/// Places on a straight line, ends included.
+/// Points on a straight line, ends included.
 fn places(from: DVec3, to: DVec3) -> Vec<DVec3> {
     // No arm or part needs more.
     let steps = (from.distance(to) / STEP_MM).ceil().clamp(1.0, 1e4) as usize;
     (0..=steps).map(|k| from.lerp(to, k as f64 / steps as f64)).collect()
 }
 
-/// Distance of two segments.
+/// Distance of two segments, mm.
 fn between([p, q]: [DVec3; 2], [r, s]: [DVec3; 2]) -> f64 {
     let (u, v, w) = (q - p, s - r, p - r);
     let (a, b, c, d, e) = (u.dot(u), u.dot(v), v.dot(v), u.dot(w), v.dot(w));
@@ -118,7 +118,7 @@ fn between([p, q]: [DVec3; 2], [r, s]: [DVec3; 2]) -> f64 {
     let across = a * c - b * b;
     let first = if across > 1e-9 * a * c { ((b * e - c * d) / across).clamp(0.0, 1.0) } else { 0.0 };
     let second = on(b * first + e, c);
-    // The place on the first segment that is nearest to that on the second.
+    // The point of the first segment nearest to that on the second.
     let first = on(b * second - d, a);
     (p + u * first).distance(r + v * second)
 }

@@ -1,7 +1,8 @@
-//! A better place for the part: a search over x, y, z and rotation for the greatest least margin near where the part was.
+//! A better position for the part: a search over x, y, z and rotation for the greatest least margin near the current
+//! position.
 //!
-//! A grid over the space in front of the robot, then smaller and smaller steps from its best place. A place is judged
-//! by the outermost points of a few layers, with one torch angle for all of them. Nothing is random.
+//! A grid over the space in front of the robot, then smaller and smaller steps from its best position. A position is
+//! judged by the outermost points of a few layers, with one torch angle for all of them. Nothing is random.
 
 use crate::arm::{Arm, Branch, Frame, turned_near};
 use crate::cell::{Cell, PartPlace};
@@ -17,31 +18,31 @@ const LAYERS: usize = 5;
 const DIRECTIONS: usize = 8;
 /// Number of torch angles tried on the grid.
 const COARSE: usize = 12;
-/// Number of torch angles tried after that: those of the walk.
+/// Number of torch angles tried after that: the same as in the walk.
 const FINE: usize = crate::turn::ANGLES;
 /// Least gain in margin that makes moving a part worthwhile, °.
 pub(crate) const WORTH_MOVING: f64 = 5.0;
-/// A move of this many mm, or a turn of this many °, must gain a degree of margin: of equal places the nearest is taken.
+/// Move, mm, and turn, °, that must each gain one degree of margin: of equal positions the nearest is chosen.
 const MM_PER_DEGREE: f64 = 100.0;
 const TURN_PER_DEGREE: f64 = 45.0;
 /// Steps of the refinement, mm and °; the last ones are the resolution of the answer.
 const STEPS: [(f64, f64); 4] = [(80.0, 16.0), (40.0, 8.0), (20.0, 4.0), (10.0, 2.0)];
 
-/// A place for the part.
+/// A suggested position for the part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Suggestion {
-    /// Where to put it.
+    /// The position.
     pub place: PartPlace,
     /// Least margin of the points examined, °.
     pub margin: f64,
     /// The torch angle that gives it, °.
     pub torch_angle: f64,
-    /// Least margin of these points with the part where it is now, °; none where some are out of reach.
+    /// Least margin of these points with the part in its current position, °; `None` if some are out of reach.
     pub now: Option<f64>,
 }
 
 impl Suggestion {
-    /// What to do.
+    /// The suggestion in words.
     pub fn sentence(&self) -> String {
         let Self { place, margin, torch_angle, now } = self;
         if let Some(now) = now.filter(|now| margin - now < WORTH_MOVING) {
@@ -60,7 +61,7 @@ impl Suggestion {
     }
 }
 
-/// Searches for a place; `None` where the arm cannot reach all points from any place tried.
+/// Searches for a position; `None` if the arm cannot reach all points from any position tried.
 pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestion> {
     let points = outermost(track);
     let (arm, tool_from_flange) = (cell.arm(), cell.flange_from_tool().inverse());
@@ -74,7 +75,7 @@ pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestio
     let better = |best: Option<Suggestion>, tried: Vec<Option<Suggestion>>| better(start, best, tried);
     let mut best = better(None, judged).and_then(|found| better(here, vec![fine(found.place)]))?;
     for (mm, degrees) in STEPS {
-        // Every step gains some margin, so this ends.
+        // Every step gains some margin, so the loop ends.
         loop {
             let tried: Vec<Option<Suggestion>> = around(best.place, mm, degrees).into_par_iter().map(fine).collect();
             let Some(found) = better(Some(best), tried).filter(|f| worth(f, start) > worth(&best, start) + 0.05) else {
@@ -86,14 +87,14 @@ pub fn suggest(cell: &Cell, start: PartPlace, track: &Track) -> Option<Suggestio
     Some(Suggestion { now: here.map(|s| s.margin), ..best })
 }
 
-/// The margin of a place, less the cost of bringing the part there, °.
+/// The margin of a position, less the cost of moving the part there, °.
 fn worth(found: &Suggestion, start: PartPlace) -> f64 {
     let moved = DVec3::from(found.place.position).distance(DVec3::from(start.position));
     let turned = turned_near(found.place.rotation - start.rotation, 0.0).abs();
     found.margin - moved / MM_PER_DEGREE - turned / TURN_PER_DEGREE
 }
 
-/// The first of the best places.
+/// The first of the best positions.
 fn better(start: PartPlace, best: Option<Suggestion>, tried: Vec<Option<Suggestion>>) -> Option<Suggestion> {
     let better = |best: Option<Suggestion>, new: Suggestion| match best {
         Some(old) if worth(&old, start) >= worth(&new, start) => Some(old),
@@ -102,7 +103,7 @@ fn better(start: PartPlace, best: Option<Suggestion>, tried: Vec<Option<Suggesti
     tried.into_iter().flatten().fold(best, better)
 }
 
-/// Places in front of the robot, on or above the floor, in whole centimetres.
+/// Positions in front of the robot, on or above the floor, in whole centimetres.
 fn grid(arm: &Arm, rotation: f64) -> Vec<PartPlace> {
     let part_of_reach = |part: f64| (part * arm.reach() / 10.0).round() * 10.0;
     let mut places = Vec::new();
@@ -136,8 +137,8 @@ fn around(place: PartPlace, mm: f64, degrees: f64) -> Vec<PartPlace> {
     places
 }
 
-/// The best least margin over branches and torch angles; `None` where each of them leaves some point out of reach or
-/// beyond a limit.
+/// The best least margin over branches and torch angles; `None` if each of them has some point out of reach or beyond a
+/// limit.
 pub(crate) fn rate(
     arm: &Arm,
     tool_from_flange: &Frame,
@@ -193,9 +194,9 @@ pub(crate) fn outermost(track: &Track) -> Vec<DVec3> {
     points
 }
 
-/// The best of some values for an axis that brings the part to a place, its margin (°), and that of the value 0, `None` where
-/// some points are out of reach there. They are judged by the outermost points of a few layers. 0 is kept unless another
-/// value gains enough, and the smallest of equals wins. `None` where no value brings all points within reach.
+/// The best of some values of an axis that moves the part, its margin (°), and the margin at the value 0 (`None` if
+/// some points are out of reach there). Values are judged by the outermost points of a few layers. 0 is kept unless
+/// another value gains enough; of equals the smallest wins. `None` if no value brings all points within reach.
 pub(crate) fn best(
     cell: &Cell,
     track: &Track,

@@ -1,31 +1,31 @@
-//! A turn table under the part: the one angle, for the whole program, that gives the robot the most margin.
+//! A turn table under the part: the one angle, for the whole program, that gives the robot the greatest margin.
 //!
-//! The part's frame turns with the table, as a base on external kinematics does, so the positions in the program stay
-//! as they are. Angles are judged like places of the part (`suggest`): by the outermost points of a few layers.
+//! The part's frame turns with the table, as a base on external kinematics does, so the positions in the program are
+//! unchanged. Angles are judged like positions of the part (`suggest`): by the outermost points of a few layers.
 
 use crate::cell::{Cell, PartPlace};
 use crate::suggest::best;
 use crate::track::Track;
 use serde::Serialize;
 
-/// Angles that are tried, °: whole multiples of this within the table's limits.
+/// Angles tried, °: whole multiples of this within the table's limits.
 const STEP: f64 = 5.0;
 
 /// A table at one angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TableAngle {
-    /// Angle that the table shows, °: `program.table_angle`.
+    /// Angle of the table, °: `program.table_angle`.
     pub angle: f64,
-    /// Where the part lies at that angle.
+    /// Position of the part at that angle.
     pub place: PartPlace,
     /// Least margin of the points examined, °.
     pub margin: f64,
-    /// Least margin of these points with the table at 0°; none where some are out of reach.
+    /// Least margin of these points with the table at 0°, °; `None` if some are out of reach.
     pub unturned: Option<f64>,
 }
 
-/// The best angle of the cell's table for a part that lies at `place` while the table is at 0°; `None` without a
-/// table, or where no angle brings all points within reach. Turning the table must gain enough to be worthwhile.
+/// The best angle of the cell's table for a part that is at `place` with the table at 0°; `None` without a table, or if
+/// no angle brings all points within reach. The table is turned only if the gain is worthwhile.
 pub fn turn_table(cell: &Cell, place: PartPlace, track: &Track) -> Option<TableAngle> {
     let table = cell.table.as_ref()?;
     let [low, high] = table.limits;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Borrow;
 
-/// Moves longer than this are divided, mm, so that no joint can swing out unseen between two stops.
+/// Longer moves are divided, mm, so that no joint can swing out unnoticed between two stops.
 pub const PIECE_MM: f64 = 20.0;
 
 /// A point of the path.
@@ -15,39 +15,39 @@ pub const PIECE_MM: f64 = 20.0;
 pub struct Stop {
     /// Layer, from 0.
     pub layer: usize,
-    /// Pass in its layer, from 0; a travel belongs to the pass that it leads to, the move up to the pass that it leaves.
+    /// Pass in its layer, from 0; a travel belongs to the pass that it leads to, a move up to the pass that it leaves.
     pub pass: usize,
-    /// Point of the pass as in the program, from 0; on the way to a point, that point.
+    /// Point of the pass as in the program, from 0; on the way to a point, the index of that point.
     pub point: usize,
     /// Tool point in the part's space, mm.
     pub at: DVec3,
-    /// Time since the stop before, s, at the wanted speed.
+    /// Time since the previous stop at the wanted speed, s.
     pub seconds: f64,
     /// Whether the arc burns on the way to this stop.
     pub arc: bool,
     /// The attitude of torch and part there.
     #[serde(skip)]
     pub attitude: Attitude,
-    /// Whether it lies on the part, or on the move from or to home.
+    /// Whether it belongs to the program, or to the move from or to home.
     pub leg: Leg,
 }
 
 impl Stop {
-    /// The tool here, turned by `angle` (°) about the torch's axis, in the part's space as it lies while what turns it during the
-    /// program is at 0.
+    /// The tool frame here, turned by `angle` (°) about the torch's axis, in the part's space with the axes that turn
+    /// the part at 0.
     pub fn tool(&self, angle: f64) -> Frame {
         let upright = part_from_tool(self.at, angle);
         let leaning = Frame { rotation: self.attitude.rotation() * upright.rotation, ..upright };
         self.turned_table().then(&leaning)
     }
 
-    /// Where the part lies as a table or a positioner holds it here.
+    /// Frame of the part as held by a table or a positioner here.
     pub fn turned_table(&self) -> Frame {
         self.attitude.held.map_or(Frame::IDENTITY, Frame::from)
     }
 }
 
-/// Where a part lies that is held so.
+/// The frame of a part that is held so.
 impl From<Held> for Frame {
     fn from(held: Held) -> Self {
         Self { position: held.shift, rotation: held.turn }
@@ -74,7 +74,7 @@ pub struct Track {
     pub stops: Vec<Stop>,
     /// Speed of travels, mm/s.
     pub travel_speed: f64,
-    /// The greatest width with which a pass begins, mm.
+    /// The greatest width at the start of any pass, mm.
     pub bead_width: f64,
 }
 
@@ -158,7 +158,7 @@ impl Track {
         }
     }
 
-    /// Goes straight to a stop, whose `seconds` still hold the speed (mm/s).
+    /// Moves straight to a stop, whose `seconds` still contain the speed (mm/s).
     fn go(&mut self, stop: Stop) {
         let speed = stop.seconds.max(1e-6);
         let Some((from, standing)) = self.stops.last().map(|s| (s.at, s.attitude)) else {

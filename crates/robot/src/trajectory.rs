@@ -1,8 +1,8 @@
 //! The path of the joints over a program, for simulators and motion software: a table, or ROS 2's
 //! `trajectory_msgs/JointTrajectory` as JSON.
 //!
-//! Times are those at the wanted speeds, without waits and acceleration; a ROS message has positions only, since the torch
-//! changes its speed from point to point.
+//! Times are those at the wanted speeds, without waits and acceleration; a ROS message has positions and times only,
+//! since the torch changes its speed from point to point.
 
 use crate::cell::Cell;
 use crate::walk::Reach;
@@ -10,13 +10,13 @@ use crate::{Joints, Stop};
 use bead_program::number::push_fixed;
 use serde_json::{Value, json};
 
-/// Points are at least this far apart in time, s: ROS accepts no two points at the same time.
+/// Least time between points, s: ROS accepts no two points at the same time.
 const SHORTEST_S: f64 = 1e-6;
 
 /// The path of the joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
-    /// The cell.
+    /// Name of the cell.
     pub cell: String,
     /// Its points.
     pub points: Vec<Point>,
@@ -31,7 +31,7 @@ pub struct Point {
     pub joints: Joints,
     /// Turn of the torch about its axis, °.
     pub torch_angle: f64,
-    /// Where the torch is.
+    /// Position of the torch, and the stop's other data.
     pub stop: Stop,
 }
 
@@ -39,7 +39,7 @@ const HEAD: &str =
     "time (s),layer,pass,arc,x (mm),y (mm),z (mm),torch angle (°),J1 (°),J2 (°),J3 (°),J4 (°),J5 (°),J6 (°)\n";
 
 impl Trajectory {
-    /// The path of the joints in a cell; `None` where a stop is out of reach.
+    /// The path of the joints in a cell; `None` if a stop is out of reach.
     pub fn of(cell: &Cell, reach: &Reach) -> Option<Self> {
         let (mut points, mut now): (Vec<Point>, f64) = (Vec::with_capacity(reach.poses.len()), 0.0);
         for (stop, pose) in &reach.poses {
@@ -56,7 +56,7 @@ impl Trajectory {
         Some(Self { cell: cell.name.clone(), points })
     }
 
-    /// A table with a line for each point; layers and passes count from 1.
+    /// A CSV table with a line for each point; layers and passes count from 1.
     pub fn csv(&self) -> String {
         let mut text = String::with_capacity(HEAD.len() + 110 * self.points.len());
         text.push_str(HEAD);

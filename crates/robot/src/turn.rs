@@ -14,32 +14,32 @@ use std::collections::HashMap;
 pub(crate) const ANGLES: usize = 36;
 /// Step from one to the next, °.
 pub(crate) const STEP: f64 = 360.0 / ANGLES as f64;
-/// The torch does not turn in less time than this from one station to the next, s.
+/// The torch turns from one station to the next only if there is at least this much time, s.
 const TURNING_SECONDS: f64 = 0.2;
-/// Margin of a pose that cannot be reached, °.
+/// Margin assigned to a pose that cannot be reached, °.
 const NOWHERE: f32 = -1e3;
-/// Margin that may be given up so that the torch need not turn at all, °.
+/// Margin that may be given up so that the torch does not have to turn, °.
 const WORTH_TURNING: f32 = 5.0;
-/// Margins that differ by less count as the same, °.
+/// Margins that differ by less than this are equal, °.
 const SAME: f32 = 1e-2;
-/// What a station beyond a limit costs, in turns.
+/// Cost of a station beyond a limit, in turns.
 const BAD: u64 = 1 << 12;
 
-/// Up to this many stations have margins of their own; where there are more, neighbours with like attitudes share theirs.
+/// Up to this many stations each have their own margins; beyond that, neighbours with similar attitudes share them.
 const EXACT: usize = 10_000;
-/// Stations no farther apart than about this share their margins, mm: those of arms of 1 to 2 m differ by 0.1° on average, and
-/// by a few degrees only near a singularity. The walk along the chosen course computes every stop by itself.
+/// Stations within about this distance share their margins, mm: those of arms with 1 to 2 m reach differ by 0.1° on
+/// average, and by a few degrees only near a singularity. The walk along the chosen course computes every stop exactly.
 const SHARED_MM: f64 = 5.0;
-/// And those whose tools are turned by less than about this, as the sine of half the angle: 0.3°.
+/// They also have tools that differ in rotation by less than about this, as the sine of half the angle: 0.3°.
 const SHARED_TURN: f64 = 0.0025;
 
-/// Margins of one station: for each angle, those of all branches, °.
+/// Margins of one station, °: for each angle, those of all branches.
 type Row = [[f32; Branch::COUNT]; ANGLES];
 
 /// The margins of all stations.
 struct Rows {
     rows: Vec<Row>,
-    /// The row of each station.
+    /// Index of the row of each station.
     of: Vec<usize>,
 }
 
@@ -51,7 +51,7 @@ pub(crate) struct Course {
     pub(crate) angles: Vec<f64>,
     /// The best single angle, °, and its least margin, °.
     pub(crate) single: (f64, f64),
-    /// Poses that were computed.
+    /// Number of poses computed.
     pub(crate) poses: usize,
 }
 
@@ -69,7 +69,7 @@ pub(crate) fn course(arm: &Arm, base_from_part: &Frame, tool_from_flange: &Frame
     } else if least[greatest] >= 0.0 {
         (greatest, steps(greatest).fewest_turns(least[greatest] - SAME).1)
     } else {
-        // No branch reaches every station: the one that reaches the most.
+        // No branch reaches every station: take the one that reaches the most.
         let tried = (0..Branch::COUNT).map(|b| (b, steps(b).fewest_turns(0.0)));
         tried.min_by_key(|(b, (cost, _))| (*cost, *b)).map_or((0, Vec::new()), |(b, (_, path))| (b, path))
     };
@@ -132,12 +132,12 @@ impl Rows {
     }
 }
 
-/// The first station of each group of neighbours with like attitudes, and the group of each station.
+/// The first station of each group of neighbours with similar attitudes, and the group of each station.
 fn neighbours(stops: &[Stop], stations: &[usize]) -> (Vec<usize>, Vec<usize>) {
     let (mut first, mut groups) = (Vec::new(), HashMap::new());
     let mut group = |&station: &usize| {
         let tool = stops[station].tool(0.0);
-        // A turn and its negative are the same.
+        // A quaternion and its negative are the same rotation.
         let turn = if tool.rotation.x < 0.0 { -tool.rotation } else { tool.rotation };
         let place = (tool.position / SHARED_MM).round().as_i64vec3();
         let key = (place, turn.to_array().map(|q| (q / SHARED_TURN).round() as i64));
@@ -162,7 +162,7 @@ fn row(arm: &Arm, base_from_part: &Frame, tool_from_flange: &Frame, stop: &Stop)
     row
 }
 
-/// The table as one branch sees it.
+/// The table for one branch.
 #[derive(Clone, Copy)]
 struct Steps<'a> {
     rows: &'a Rows,
@@ -175,13 +175,13 @@ impl Steps<'_> {
         self.rows.rows[self.rows.of[station]][k][self.branch]
     }
 
-    /// Angles at the station before from which angle `k` can be reached, the unturned one first.
+    /// Angles at the previous station from which angle `k` can be reached, the unturned one first.
     fn before(&self, station: usize, k: usize) -> impl Iterator<Item = usize> + use<> {
         let count = if self.turnable[station] { 3 } else { 1 };
         [k, (k + 1) % ANGLES, (k + ANGLES - 1) % ANGLES].into_iter().take(count)
     }
 
-    /// The greatest least margin of any course.
+    /// The greatest least margin of any course, °.
     fn best_margin(&self) -> f32 {
         let mut best = [f32::INFINITY; ANGLES];
         for station in 0..self.rows.len() {
@@ -193,7 +193,7 @@ impl Steps<'_> {
         best.into_iter().fold(f32::NEG_INFINITY, f32::max)
     }
 
-    /// The course with the fewest stations below that margin, and then the fewest turns; with its cost.
+    /// The course with the fewest stations below that margin, and among those the fewest turns; with its cost.
     fn fewest_turns(&self, margin: f32) -> (u64, Vec<usize>) {
         let mut costs = [0_u64; ANGLES];
         let mut came = Vec::with_capacity(self.rows.len());
@@ -203,7 +203,7 @@ impl Steps<'_> {
                 let turned = |j: usize| (costs[j].saturating_add(u64::from(j != k)), j);
                 let (cost, j) = self.before(station, k).map(turned).min_by_key(|(cost, _)| *cost).unwrap_or_default();
                 from[k] = j as u8;
-                // Beyond a limit is bad, out of reach is worse.
+                // Beyond a limit is bad; out of reach is worse.
                 let bad = if self.margin(station, k) >= margin {
                     0
                 } else if self.margin(station, k) > NOWHERE {
@@ -222,7 +222,7 @@ impl Steps<'_> {
         (costs[end], path)
     }
 
-    /// The best constant angle, as a number of steps, and its least margin, °.
+    /// The best constant angle, in steps of the table, and its least margin, °.
     fn single(&self) -> (usize, f32) {
         let least = |k: usize| (0..self.rows.len()).map(|s| self.margin(s, k)).fold(f32::INFINITY, f32::min);
         (0..ANGLES).map(|k| (k, least(k))).rev().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, NOWHERE))

@@ -1,5 +1,5 @@
-//! Arms from URDF files, as ROS has them: <http://wiki.ros.org/urdf/XML/joint>. URDF is in metres and radians; nothing of
-//! that leaves this file.
+//! Arms from URDF files, as used by ROS: <http://wiki.ros.org/urdf/XML/joint>. URDF is in metres and radians, which
+//! stay within this file.
 
 use crate::arm::Frame;
 use crate::arm_table::{ArmTable, Shape};
@@ -9,15 +9,15 @@ use roxmltree::{Document, Node, ParsingOptions};
 use std::sync::Arc;
 
 const MM_PER_M: f64 = 1e3;
-/// A joint that turns without end gets these limits, °.
+/// Limit assigned to a joint that turns endlessly, °.
 const ENDLESS: f64 = 7200.0;
-/// Maximum number of elements, attributes and texts of a file; meshes are not in it.
+/// Most elements, attributes and texts of a file; meshes are not part of it.
 const MOST_NODES: u32 = 200_000;
-/// Joints between two links.
+/// Most joints between two links.
 const MOST_JOINTS: usize = 100;
-/// No origin lies farther than this from the one before it, m.
+/// Greatest distance of an origin from the one before it, m.
 const FARTHEST_M: f64 = 100.0;
-/// The link that ROS-Industrial puts on the flange as its maker defines it, z outwards (REP 199).
+/// The link that ROS-Industrial puts on the flange as defined by its maker, z outwards (REP 199).
 const MAKERS_FLANGE: &str = "tool0";
 
 /// Why a URDF file was refused.
@@ -27,10 +27,10 @@ pub enum UrdfError {
     /// Not XML, or not a URDF file.
     #[error("it is not a URDF file: {0}.")]
     Text(String),
-    /// A template that has to be expanded first.
+    /// A xacro template, which must be expanded first.
     #[error("it is a xacro template. Make a URDF file from it: xacro robot.urdf.xacro > robot.urdf")]
     Xacro,
-    /// A joint lacks something, or has something impossible.
+    /// A joint that lacks something, or has an impossible value.
     #[error("line {line}, joint \"{joint}\": {reason}.")]
     Joint {
         /// Line number, from 1.
@@ -48,16 +48,16 @@ pub enum UrdfError {
     Axes(#[from] ChainError),
 }
 
-/// The links between which the arm lies; where not given they are found.
+/// The links at the ends of the arm; those not given are searched for.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Ends {
-    /// The foot; otherwise the link that has no parent.
+    /// The foot; default: the link that has no parent.
     pub base: Option<String>,
-    /// The flange; otherwise `tool0`, or the only link without a child.
+    /// The flange; default: `tool0`, or the only link without a child.
     pub tip: Option<String>,
 }
 
-/// A joint as it is written in the file.
+/// A joint as written in the file.
 #[derive(Clone)]
 struct Joint<'a> {
     node: Node<'a, 'a>,
@@ -81,7 +81,7 @@ pub fn read(text: &str, ends: &Ends) -> Result<ArmTable, UrdfError> {
     if root.tag_name().name() != "robot" {
         return Err(UrdfError::Text(format!("its outermost element is <{}>, not <robot>", root.tag_name().name())));
     }
-    // Joints of <transmission> and <ros2_control> lie deeper.
+    // Joints of <transmission> and <ros2_control> are nested deeper.
     let joints = root.children().filter(|node| node.has_tag_name("joint")).map(joint);
     arm(&way(&joints.collect::<Result<Vec<_>, _>>()?, ends)?)
 }
@@ -137,7 +137,7 @@ fn last_link<'a>(joints: &[Joint<'a>]) -> Result<&'a str, UrdfError> {
     }
 }
 
-/// The arm of the joints in the chain; fixed ones are added to the next.
+/// The arm formed by the joints of the chain; fixed ones are merged into the next.
 fn arm(way: &[Joint<'_>]) -> Result<ArmTable, UrdfError> {
     let still = Frame { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
     let (mut before, mut turning) = (still, Vec::new());
@@ -173,7 +173,7 @@ fn origin(joint: &Joint<'_>) -> Result<Frame, UrdfError> {
     Ok(Frame { position: position * MM_PER_M, rotation })
 }
 
-/// The direction of the axis, x where the file gives none.
+/// The direction of the axis; x if the file gives none.
 fn axis(joint: &Joint<'_>) -> Result<DVec3, UrdfError> {
     let Some(text) = child(joint.node, "axis").and_then(|node| node.attribute("xyz")) else { return Ok(DVec3::X) };
     let axis = three(joint, "xyz", text)?.try_normalize();

@@ -1,4 +1,4 @@
-//! The walk along the whole path: joint angles, margins, speeds, and what is wrong.
+//! The walk along the whole path: joint angles, margins, speeds and findings.
 
 use crate::arm::{Arm, Branch, Frame, Joints, Margins, turned_near};
 use crate::cell::{Cell, PartPlace};
@@ -10,7 +10,7 @@ use crate::turn;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// A finding is reported where joint 5 is closer than this to its singular angle, °: |sin J5| = 0.087.
+/// Joint 5 closer than this to its singular angle is reported, °: |sin J5| = 0.087.
 pub(crate) const WRIST_MARGIN: f64 = 5.0;
 /// Joint angles that differ by less than this belong to one posture, °.
 const SAME_POSTURE: f64 = 1.0;
@@ -22,48 +22,49 @@ pub struct Pose {
     pub torch_angle: f64,
     /// Angles of the joints, °.
     pub joints: Joints,
-    /// How far it is from limits and singularities.
+    /// Its margins from limits and singularities.
     pub margins: Margins,
     /// Speed of each joint on the way here, °/s.
     pub speeds: [f64; 6],
 }
 
-/// How the torch is turned about its own axis.
+/// The torch angle over the program.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Turning {
-    /// Least and greatest angle that was chosen, °.
+    /// Least and greatest angle chosen, °.
     pub range: (f64, f64),
     /// The best single angle for the whole program, °.
     pub single: f64,
-    /// Least margin with that single angle, °; far below 0 where some point is out of reach.
+    /// Least margin with that single angle, °; far below 0 if some point is out of reach.
     pub single_margin: f64,
 }
 
 impl Turning {
-    /// The torch angle to plan with, `program.torch_angle`, -180 to 180°; none where no single angle reaches every point.
+    /// The torch angle to plan with, `program.torch_angle`, -180 to 180°; `None` if no single angle reaches every
+    /// point.
     pub fn program_angle(&self) -> Option<f64> {
         (self.single_margin >= 0.0).then(|| turned_near(self.single, 0.0))
     }
 }
 
-/// What a walk has found.
+/// The results of a walk.
 #[derive(Debug, Clone)]
 pub struct Reach {
-    /// Where the part lies.
+    /// Position of the part.
     pub place: PartPlace,
-    /// The branch of the arm.
+    /// The branch of the arm used.
     pub branch: Branch,
-    /// The stops with the pose of the arm; `None` where it cannot get there.
+    /// The stops with the pose of the arm; `None` if it cannot get there.
     pub poses: Vec<(Stop, Option<Pose>)>,
     /// The torch angle.
     pub turning: Turning,
-    /// What is wrong, one finding for each kind and joint, the fatal ones first.
+    /// What is wrong: one finding for each kind, joint and leg, the fatal ones first.
     pub findings: Vec<ReachFinding>,
-    /// Poses whose joint angles were computed.
+    /// Number of poses computed.
     pub computed: usize,
 }
 
-/// Walks a track with the part at a place of the cell, from home and back.
+/// Walks a track with the part at a given position in the cell, including the moves from home and back.
 pub fn reach(cell: &Cell, place: PartPlace, track: &Track) -> Reach {
     let arm = cell.arm();
     let (base_from_part, tool_from_flange) = (place.base_from_part(), cell.flange_from_tool().inverse());
@@ -113,13 +114,13 @@ fn solve(arm: &Arm, base_from_flange: &Frame, branch: Branch) -> Option<Joints> 
 struct Walk<'a> {
     arm: &'a Arm,
     before: Option<Joints>,
-    /// What takes up room; none where the cell does not say.
+    /// Collision checks; `None` if the cell gives no thicknesses.
     room: Option<Room<'a>>,
     findings: Findings,
 }
 
 impl Walk<'_> {
-    /// Moves between home and an end of the program.
+    /// Walks a move between home and an end of the program.
     fn home(&mut self, way: &Move<'_>, from: Joints, to: Joints, like: Stop) {
         self.before = None;
         for (stop, joints, flange) in way.stops(from, to, like) {
@@ -132,7 +133,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Moves to one stop.
+    /// Walks to one stop.
     fn step(
         &mut self,
         stop: &Stop,
@@ -146,7 +147,7 @@ impl Walk<'_> {
             self.before = None;
             return None;
         };
-        // A joint continues from where it is and does not jump by a whole turn.
+        // A joint continues from its current angle and does not jump by a whole turn.
         for (joint, before) in joints.iter_mut().zip(self.before.into_iter().flatten()) {
             *joint = turned_near(*joint, before);
         }
@@ -171,7 +172,7 @@ impl Walk<'_> {
                 self.findings.add(stop, Trouble::Speed { joint, speed: pose.speeds[joint], limit, arc: stop.arc });
             }
         }
-        // Joint moves pass the singularity unharmed.
+        // Joint moves pass through the singularity unharmed.
         if by == Way::Line && pose.margins.wrist < WRIST_MARGIN {
             self.findings.add(stop, Trouble::Wrist { margin: pose.margins.wrist });
         }
@@ -179,7 +180,7 @@ impl Walk<'_> {
 }
 
 impl Walk<'_> {
-    /// Looks for what the arm hits at a stop.
+    /// Checks for collisions at a stop.
     fn touch(&mut self, stop: &Stop, joints: &Joints) {
         let contacts = self.room.as_ref().map(|room| room.contacts(joints, &stop.turned_table())).unwrap_or_default();
         for contact in contacts {
@@ -207,13 +208,13 @@ impl Reach {
         self.reached().map(|(_, pose)| pose.margins.least()).min_by(f64::total_cmp)
     }
 
-    /// The stops that the arm reaches, with its pose.
+    /// The stops that the arm reaches, with its pose there.
     pub fn reached(&self) -> impl Iterator<Item = (&Stop, &Pose)> {
         self.poses.iter().filter_map(|(stop, pose)| Some((stop, pose.as_ref()?)))
     }
 
-    /// Range of a joint (from 0), °, its least margin, °, and its greatest speed with and without arc, °/s; none
-    /// where nothing is reached.
+    /// Range of a joint (from 0), its least margin, and its greatest speed with and without arc; `None` if no stop is
+    /// reached.
     pub fn joint(&self, joint: usize) -> Option<JointRange> {
         let mut range: Option<JointRange> = None;
         for (stop, pose) in self.reached() {

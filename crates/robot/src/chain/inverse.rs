@@ -1,27 +1,27 @@
-//! The closed forms: joint by joint from what the joints not yet known leave unchanged. Angles in rad.
+//! The closed forms, joint by joint, using quantities that the unknown joints do not change. Angles in rad.
 //!
-//! Turns about parallel axes do not change a place's height along them: that gives joint 1 by the centre of the wrist.
-//! Upper arm and forearm are then two links in a plane, and the wrist's angles follow from directions alone (subproblems
-//! of Paden 1986 and Kahan).
+//! Turns about parallel axes do not change a point's height along them: that gives joint 1 from the centre of the
+//! wrist. Upper arm and forearm are then two links in a plane, and the wrist's angles follow from directions alone
+//! (subproblems of Paden 1986 and Kahan).
 
 use super::turn::{Wave, across, turn_onto, turned};
 use super::{Chain, Wrist};
 use crate::arm::Frame;
 use glam::DVec3;
 
-/// The end of the forearm, as required by joint 1 and, with an offset wrist, by joints 5 and 6.
+/// The required end of the forearm, given joint 1 and, with an offset wrist, joints 5 and 6.
 struct Wanted {
     q1: f64,
-    /// Joints 5 and 6 where they are known already.
+    /// Joints 5 and 6, if already known.
     hand: Option<[f64; 2]>,
-    /// What joints 2, 3 and 4, and those of the hand that are not known, have to do.
+    /// The transform required of joints 2, 3 and 4, and of those of the hand that are unknown.
     rest: Frame,
-    /// Where the end of the forearm has to be.
+    /// The required end of the forearm.
     end: DVec3,
 }
 
 impl Chain {
-    /// All solutions for a chain whose axes are exactly parallel and meet exactly; approximate ones for others.
+    /// All solutions, for a chain whose axes are exactly parallel and meet exactly; approximate ones for others.
     pub(super) fn closed_forms(&self, base_from_flange: &Frame) -> Vec<[f64; 6]> {
         let mut found = Vec::with_capacity(8);
         for wanted in self.wanted(base_from_flange).0 {
@@ -35,7 +35,7 @@ impl Chain {
         found
     }
 
-    /// How far the end of the forearm lies beyond the two links, or short of them, mm.
+    /// Distance by which the required end of the forearm is out of reach of the two links, mm.
     pub(super) fn closed_miss(&self, base_from_flange: &Frame) -> f64 {
         let (wanted, beside) = self.wanted(base_from_flange);
         let [upper, fore] = self.links_across(0.0).map(DVec3::length);
@@ -46,7 +46,7 @@ impl Chain {
         wanted.iter().map(miss).min_by(f64::total_cmp).unwrap_or(beside)
     }
 
-    /// Where the forearm may end, and by how much the wrist is too near to axis 1 for any, mm.
+    /// Where the forearm may end, and the distance by which the wrist is too near to axis 1 for any solution, mm.
     fn wanted(&self, base_from_flange: &Frame) -> (Vec<Wanted>, f64) {
         let [one, two, ..] = self.axes;
         let all = base_from_flange.then(&self.flange.inverse());
@@ -62,8 +62,8 @@ impl Chain {
         (shoulder.angles().into_iter().flat_map(after).collect(), shoulder.excess())
     }
 
-    /// Joints 5 and 6 of an offset wrist: the angle between axes 4 and 6 is wanted, and joints 2 to 4 leave axis 4 as it
-    /// is.
+    /// Joints 5 and 6 of an offset wrist: the angle between axes 4 and 6 is given, because joints 2 to 4 do not change
+    /// the direction of axis 4.
     fn offset_hands(&self, q1: f64, rest: &Frame) -> Vec<Wanted> {
         let [.., four, five, six] = self.axes;
         let angles = Wave::new(five.along, six.along, four.along, four.along.dot(rest.rotation * six.along)).angles();
@@ -76,7 +76,7 @@ impl Chain {
         angles.into_iter().map(hand).collect()
     }
 
-    /// Joints 2 and 3 that bring the end of the forearm to a place.
+    /// Joints 2 and 3 that bring the end of the forearm to a point.
     fn elbows(&self, end: DVec3) -> Vec<[f64; 2]> {
         let [_, two, three, ..] = self.axes;
         let wanted = across(two.along, end - two.at);
@@ -90,7 +90,7 @@ impl Chain {
         Wave::new(three.along, fore, upper, height).angles().into_iter().map(both).collect()
     }
 
-    /// Joints 4, 5 and 6 that do the rest.
+    /// Joints 4, 5 and 6 that supply the rest.
     fn hands(&self, wanted: &Wanted, left: &Frame) -> Vec<[f64; 3]> {
         let [.., four, five, six] = self.axes.map(|axis| axis.along);
         if let Some([q5, q6]) = wanted.hand {

@@ -1,9 +1,10 @@
-//! Arms as a chain of six turning joints, from Denavit-Hartenberg rows or a URDF file.
+//! Arms as a chain of six revolute joints, from Denavit-Hartenberg rows or a URDF file.
 //!
 //! Each joint is a line about which everything beyond it turns (product of exponentials: Brockett 1984; Murray, Li and
 //! Sastry 1994). Two kinds of arm have closed forms (`inverse.rs`): axes 2 and 3 parallel with axes 4, 5 and 6 through
-//! one point, as most welding robots have, and axes 2, 3 and 4 parallel with axes 5 and 6 through one point, as the arms
-//! of Universal Robots have. A calibrated arm misses that by a little: its closed forms are polished (`polish.rs`).
+//! one point, as in most welding robots; and axes 2, 3 and 4 parallel with axes 5 and 6 through one point, as in the
+//! arms of Universal Robots. A calibrated arm deviates slightly from that, so its closed forms are refined
+//! (`polish.rs`).
 
 mod inverse;
 mod polish;
@@ -13,11 +14,11 @@ use crate::arm::{Branch, Frame, Joints, Model, from_zero};
 use glam::{DQuat, DVec3};
 use turn::{across, turned};
 
-/// Axes count as parallel where the sine of their angle is smaller: 0.3°.
+/// Axes count as parallel if the sine of their angle is less than this: 0.3°.
 const PARALLEL: f64 = 5e-3;
-/// Axes count as meeting where they pass each other nearer than this, mm.
+/// Axes count as meeting if they pass each other nearer than this, mm.
 const MEETING_MM: f64 = 5.0;
-/// Links are longer than this, mm.
+/// Least length of a link, mm.
 const LEAST_LINK_MM: f64 = 1.0;
 
 /// Why the joint angles of a chain cannot be computed.
@@ -28,21 +29,21 @@ const LEAST_LINK_MM: f64 = 1.0;
 )]
 pub struct ChainError(&'static str);
 
-/// A chain of six turning joints.
+/// A chain of six revolute joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
     axes: [Axis; 6],
-    /// The flange while all joints are at 0°.
+    /// The flange with all joints at 0°.
     flange: Frame,
     wrist: Wrist,
-    /// Where the axes of the wrist meet while all joints are at 0°.
+    /// The point where the axes of the wrist meet, with all joints at 0°.
     centre: DVec3,
-    /// Along axis 2, so that the arm leans forward by turning about it, and up along axis 1.
+    /// Unit vectors along axis 2, such that the arm leans forward by turning about it, and up along axis 1.
     side: DVec3,
     up: DVec3,
 }
 
-/// The axis of a joint while all joints are at 0°, in the frame of the foot.
+/// The axis of a joint with all joints at 0°, in the frame of the foot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Axis {
     at: DVec3,
@@ -58,13 +59,13 @@ enum Wrist {
 }
 
 impl Axis {
-    /// What a turn by `angle`, rad, does.
+    /// The transform of a turn by `angle`, rad.
     fn turn(&self, angle: f64) -> Frame {
         let rotation = DQuat::from_axis_angle(self.along, angle);
         Frame { position: self.at - rotation * self.at, rotation }
     }
 
-    /// Where another axis passes nearest; none where it is parallel or passes too far away.
+    /// Where another axis passes nearest; `None` if it is parallel or passes too far away.
     fn meets(&self, other: &Self) -> Option<DVec3> {
         let normal = self.along.cross(other.along);
         let (between, square) = (other.at - self.at, normal.length_squared());
@@ -80,11 +81,11 @@ impl Axis {
 }
 
 impl Chain {
-    /// A chain from the foot: each joint's frame in the one before it with the direction of its axis there, mm, then the
-    /// flange in the last joint's frame.
+    /// A chain from the foot: for each joint, its frame in that of the previous joint and the direction of its axis in
+    /// its own frame, mm; then the flange in the last joint's frame.
     ///
     /// # Errors
-    /// [`ChainError`] where no closed form fits the axes.
+    /// [`ChainError`] if no closed form fits the axes.
     pub fn new(joints: &[(Frame, DVec3); 6], flange: &Frame) -> Result<Self, ChainError> {
         let mut base = Frame { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
         let axes = joints.map(|(frame, axis)| {
@@ -106,7 +107,7 @@ impl Chain {
     /// A chain by Denavit-Hartenberg rows: a (mm), d (mm) and alpha (°) of each joint, as in Rz(q) Tz(d) Tx(a) Rx(alpha).
     ///
     /// # Errors
-    /// [`ChainError`] where no closed form fits the axes.
+    /// [`ChainError`] if no closed form fits the axes.
     pub fn from_dh(rows: &[[f64; 3]; 6]) -> Result<Self, ChainError> {
         let mut before = Frame { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
         let joints = rows.map(|[a, d, alpha]| {
@@ -117,7 +118,7 @@ impl Chain {
         Self::new(&joints, &before)
     }
 
-    /// Where the forearm ends while all joints are at 0°: a place that the joints beyond it do not move.
+    /// The end of the forearm with all joints at 0°: a point that the joints beyond it do not move.
     fn forearm_end(&self) -> DVec3 {
         match self.wrist {
             Wrist::Spherical => self.centre,
@@ -125,25 +126,25 @@ impl Chain {
         }
     }
 
-    /// Upper arm and forearm across axis 2 with joint 3 turned, rad.
+    /// Upper arm and forearm projected square to axis 2, with joint 3 turned by `q3`, rad.
     fn links_across(&self, q3: f64) -> [DVec3; 2] {
         let [_, shoulder, elbow, ..] = self.axes;
         let fore = turned(elbow.along, q3, self.forearm_end() - elbow.at);
         [elbow.at - shoulder.at, fore].map(|link| across(shoulder.along, link))
     }
 
-    /// What the first `count` joints do together, rad.
+    /// The combined transform of the first `count` joints, rad.
     fn moved(&self, joints: &[f64; 6], count: usize) -> Frame {
         let still = Frame { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
         self.axes.iter().zip(joints).take(count).fold(still, |frame, (axis, q)| frame.then(&axis.turn(*q)))
     }
 
-    /// The flange, joints in rad.
+    /// The flange for joint angles in rad.
     fn flange_at(&self, joints: &[f64; 6]) -> Frame {
         self.moved(joints, 6).then(&self.flange)
     }
 
-    /// Volume that the axes of the wrist span: 0 where it is singular; its sign distinguishes the two solutions.
+    /// Volume spanned by the wrist's axes: 0 in its singularity; its sign distinguishes the two solutions.
     fn wrist_volume(&self, q5: f64) -> f64 {
         let [.., four, five, six] = self.axes.map(|axis| axis.along);
         five.dot(four.cross(turned(five, q5, six)))

@@ -1,19 +1,20 @@
 //! Newton's method on the six joints: makes closed forms exact for chains whose axes are not quite parallel or do not
-//! quite meet, as calibrated arms have them.
+//! quite meet, as in calibrated arms.
 
 use super::Chain;
 use crate::arm::Frame;
 use glam::DVec3;
 
-/// A solution is right where the flange is nearer than this, mm; directions, in rad, count 1000 mm from the flange.
+/// A solution is right if the flange is within this, mm; directions, in rad, are weighted as at 1000 mm from the
+/// flange.
 const RIGHT_MM: f64 = 1e-7;
 const LEVER_MM: f64 = 1e3;
-/// In a singularity, where Newton's method fails, a closed form is taken if it is as near as this, mm.
+/// In a singularity, where Newton's method fails, a closed form is accepted if it is within this, mm.
 const NEAR_MM: f64 = 1e-4;
-/// Steps after which a start is given up; each squares the error.
+/// Most steps from a start; each squares the error.
 const STEPS: usize = 12;
 
-/// A solution from a nearby one, rad; `None` where there is none.
+/// A solution near given joint angles, rad; `None` if there is none.
 pub(super) fn polished(chain: &Chain, mut joints: [f64; 6], wanted: &Frame) -> Option<[f64; 6]> {
     let mut best = (f64::INFINITY, joints);
     for _ in 0..STEPS {
@@ -32,15 +33,15 @@ pub(super) fn polished(chain: &Chain, mut joints: [f64; 6], wanted: &Frame) -> O
     (best.0 < NEAR_MM).then_some(best.1)
 }
 
-/// What separates the frame from the wanted one: a shift and a turn, mm.
+/// The difference between a frame and the wanted one: a shift and a weighted turn, mm.
 fn error(now: &Frame, wanted: &Frame) -> [f64; 6] {
     let turn = wanted.rotation * now.rotation.conjugate();
-    // Of the two quaternions of a turn, the one that turns less.
+    // Of the two quaternions of a rotation, the one with the smaller turn.
     let least = if turn.w < 0.0 { -turn } else { turn };
     join(wanted.position - now.position, least.to_scaled_axis() * LEVER_MM)
 }
 
-/// How the flange moves with each joint, mm per rad.
+/// Derivative of the flange's frame by each joint, mm per rad.
 fn columns(chain: &Chain, joints: &[f64; 6], flange: DVec3) -> [[f64; 6]; 6] {
     std::array::from_fn(|j| {
         let (before, axis) = (chain.moved(joints, j), chain.axes[j]);
@@ -53,7 +54,8 @@ fn join(way: DVec3, turn: DVec3) -> [f64; 6] {
     [way.x, way.y, way.z, turn.x, turn.y, turn.z]
 }
 
-/// Weights of the columns that sum up to `sum`, by elimination with the greatest pivot; `None` for a singular matrix.
+/// The weights with which the columns add up to `sum`, by elimination with partial pivoting; `None` for a singular
+/// matrix.
 fn solved(columns: [[f64; 6]; 6], mut sum: [f64; 6]) -> Option<[f64; 6]> {
     let mut rows: [[f64; 6]; 6] = std::array::from_fn(|row| columns.map(|column| column[row]));
     for k in 0..6 {

@@ -1,8 +1,8 @@
-//! Rotations about one axis: the angle that brings a vector onto another, or to a height. Angles in rad.
+//! Rotations about one axis: the angle that brings a vector onto another, or to a given height. Angles in rad.
 
 use glam::{DQuat, DVec3};
 
-/// A height may lie beyond what a turn can reach by this fraction of its amplitude: the turn then ends at its crest.
+/// A height may exceed the reach of a turn by this fraction of its amplitude: the turn then ends at its crest.
 const ROUNDING: f64 = 1e-12;
 
 /// `vector` turned about a unit axis.
@@ -10,7 +10,7 @@ pub(super) fn turned(axis: DVec3, angle: f64, vector: DVec3) -> DVec3 {
     DQuat::from_axis_angle(axis, angle) * vector
 }
 
-/// The part of a vector across a unit axis.
+/// The component of a vector perpendicular to a unit axis.
 pub(super) fn across(axis: DVec3, vector: DVec3) -> DVec3 {
     vector - axis * axis.dot(vector)
 }
@@ -21,7 +21,7 @@ pub(super) fn turn_onto(axis: DVec3, from: DVec3, to: DVec3) -> f64 {
     axis.dot(from.cross(to)).atan2(from.dot(to))
 }
 
-/// The height of a turning vector along a direction: `amplitude` · cos(angle − `crest`), and what it must be.
+/// The height of a rotating vector along a direction: `amplitude` · cos(angle − `crest`), and its required value.
 pub(super) struct Wave {
     amplitude: f64,
     crest: f64,
@@ -36,12 +36,12 @@ impl Wave {
         Self { amplitude: cosine.hypot(sine), crest: sine.atan2(cosine), height }
     }
 
-    /// How far the height is beyond what the turn can reach.
+    /// Amount by which the required height is out of reach.
     pub(super) fn excess(&self) -> f64 {
         (self.height.abs() - self.amplitude).max(0.0)
     }
 
-    /// The two angles that reach the height; none where it cannot be reached.
+    /// The two angles that reach the height; empty if it cannot be reached.
     pub(super) fn angles(&self) -> Vec<f64> {
         if self.height.abs() <= self.amplitude * (1.0 + ROUNDING) {
             let beside = (self.height / self.amplitude.max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0).acos();
