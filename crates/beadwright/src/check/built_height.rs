@@ -18,8 +18,8 @@ pub(super) const CHECK: Check = Check {
 
 /// The fraction of the area that may end elsewhere.
 const ELSEWHERE: f64 = 0.25;
-/// No arc burns where metal ends this many stick-outs away from where it should. Less may be the model's: it lets what hangs beyond a
-/// leaning wall drop to the metal below.
+/// If metal ends this many stick-outs from where it should, no arc burns there. Smaller distances may be an error of
+/// the model, which lets metal beyond a leaning wall drop onto the metal below.
 const LOST: f64 = 1.5;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {

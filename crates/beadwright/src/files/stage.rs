@@ -45,10 +45,10 @@ impl Stage {
     /// one cannot be moved, nothing changes; what a killed run did not move, the next one moves.
     pub(super) fn move_into(mut self, target: &Path, old: &[&str], new: &[&str]) -> io::Result<()> {
         let (journal, draft) = (self.folder.path().join(JOURNAL), self.folder.path().join(DRAFT));
-        // Whole or not there: half a list would leave old files among the new ones.
+        // All or nothing: half a list would leave old files among the new ones.
         fs::write(&draft, old.join("\n"))?;
         fs::rename(draft, &journal)?;
-        // Should even the way back fail, the stage stays, with the older set in it.
+        // Should even undoing the moves fail, the stage stays, with the older set in it.
         self.folder.disable_cleanup(true);
         let moves = moves(self.folder.path(), target, old, new);
         let failed = moves.iter().enumerate().find_map(|(done, (from, to))| Some((done, fs::rename(from, to).err()?)));
@@ -90,7 +90,7 @@ pub(super) fn clear(place: &Path) {
         }
         let lock = open_lock(&stage);
         if lock.as_ref().is_ok_and(|lock| lock.try_lock().is_ok()) {
-            // Nothing is deleted of which a part is still to be moved.
+            // Nothing is deleted while part of it is still to be moved.
             _ = complete(&stage, place).and_then(|()| fs::remove_dir_all(&stage));
         }
     }
@@ -110,7 +110,7 @@ fn complete(stage: &Path, target: &Path) -> io::Result<()> {
             done => done?,
         }
     }
-    // Nothing is left to move, even if the rest of the stage is cleared only in part.
+    // Nothing is left to be moved, even if only part of the rest of the stage is cleared.
     fs::remove_file(stage.join(JOURNAL))
 }
 

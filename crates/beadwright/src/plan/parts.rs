@@ -56,10 +56,10 @@ pub fn parts_into<S: Sink + Send>(
     Ok(summary)
 }
 
-/// The room that the torch of a profile takes.
+/// The shape of a profile's torch.
 ///
 /// # Errors
-/// [`PlanError::Parts`] where the profile does not say.
+/// [`PlanError::Parts`] where the profile lacks it.
 pub fn torch_of<E>(profile: &Profile) -> Result<TorchShape, PlanError<E>> {
     profile
         .torch

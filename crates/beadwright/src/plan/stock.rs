@@ -1,4 +1,4 @@
-//! A part becomes its preform, which is planned in its place.
+//! Turns a part into its preform, which is planned instead.
 
 use super::{PlanError, TORN};
 use crate::model::holes::{self, Opening};
@@ -17,9 +17,9 @@ use std::convert::Infallible;
 pub struct Stocked {
     /// The preform, to be planned; it holds the part that is milled from it ([`Import::milled`]).
     pub part: Part,
-    /// The steps of which it is made.
+    /// The steps from which it is made.
     pub preform: Preform,
-    /// What it weighs, takes and costs.
+    /// Its mass, time and cost.
     pub figures: Figures,
 }
 
@@ -65,7 +65,7 @@ impl Stocked {
     }
 }
 
-/// What an open skin loses where its contours do not close, as a sentence.
+/// What an open surface loses where its contours do not close, as a sentence.
 fn lost(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<String>, Cancelled> {
     let is_open = holes::openings(mesh).first().is_some_and(|opening| opening.width > profile.bead.width);
     if !is_open {
