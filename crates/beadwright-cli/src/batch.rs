@@ -62,7 +62,7 @@ pub(crate) struct Arguments {
     threads: Option<u16>,
 }
 
-/// No batch has more plans than this.
+/// Maximum number of plans in a batch.
 const MOST_PLANS: usize = 100_000;
 
 /// Plans that nobody should weld as they are.

@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
-    /// Scan, in the coordinates of the part as it is planned, with z = 0 on the plate: a surface or cloud of points (PLY,
-    /// STL, OBJ, 3MF, AMF), lines of x, y, z (CSV, XYZ), or a height map. It need not be closed. Or a plan.json: what its beads
-    /// build, with its own profile.
+    /// Scan, in the coordinates of the part as it is planned, with z = 0 on the plate: a surface or cloud of points
+    /// (PLY, STL, OBJ, 3MF, AMF), lines of x, y, z (CSV, XYZ), or a height map. It need not be closed. Or a plan.json:
+    /// then the shape that its beads build is compared, with its own profile.
     #[arg(value_name = "SCAN|PLAN")]
     scan: PathBuf,
     /// Unit of the scan's coordinates, if its file does not give it.
@@ -37,10 +37,10 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// A plan that has less than this in common with a part is that of another part, or of one placed elsewhere.
+/// A plan that shares less than this fraction with a part is that of another part, or of one placed elsewhere.
 const ELSEWHERE: f64 = 0.5;
 
-/// How a part lies as it was planned.
+/// Advice on how to place the part as it was planned.
 const PLACED: &str = "place the part as it was for the plan, with its --units, --scale, --turn, --centre, --shift, --lay-flat, --orient \
                       and --onto.";
 

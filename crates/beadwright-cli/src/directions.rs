@@ -18,7 +18,7 @@ pub(crate) struct Arguments {
     /// Largest angle between a direction and the vertical, degrees: what the positioner can tilt, or the torch can lean.
     #[arg(long, value_name = "DEG", default_value_t = 90.0, value_parser = parse_tilt)]
     tilt: f64,
-    /// Which of the divisions to write, from 1.
+    /// Which of the divisions found to write, counted from 1.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     choice: u64,
     /// File of bodies to write; standard output if left out.

@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
-    /// Direction in which the layers are stacked; the surface is what is seen against it.
+    /// Direction in which the layers are stacked; the surface is what is seen looking against it.
     #[arg(long, value_name = "X/Y/Z", default_value = "z", allow_hyphen_values = true)]
     up: String,
     /// Spacing of the grid on which heights are sampled, mm; finer detail is smoothed out.

@@ -19,7 +19,7 @@ pub(crate) enum Format {
 /// Pages with more rows than this have no pictures of layers: browsers would take long to open them.
 const MOST_PICTURES: usize = 60;
 
-/// A file name and the format of its ending.
+/// A file name, and the format that its extension stands for.
 pub(super) fn parse_output(text: &str) -> Result<(PathBuf, Format), String> {
     let path = PathBuf::from(text);
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
@@ -76,7 +76,7 @@ impl Row {
         }
     }
 
-    /// Why the part should not be welded so, on one line; empty where nothing speaks against it.
+    /// Why the plan should not be welded, on one line; empty if nothing speaks against it.
     fn problem(&self) -> String {
         match &self.planned {
             Ok(planned) => planned.summary.forbidden.join(" "),
