@@ -64,7 +64,11 @@ pub(crate) fn words(profile: &Profile) -> Words {
 
 /// The part is already divided into bodies: only dividing it elsewhere helps.
 fn of_bodies(kind: &str) -> Option<&'static str> {
-    if lacks_metal_below(kind) { Some("Other planes in layers.bodies divide the part elsewhere.") } else { of_level(kind) }
+    if lacks_metal_below(kind) {
+        Some("Other planes in layers.bodies divide the part elsewhere.")
+    } else {
+        of_level(kind)
+    }
 }
 
 /// Layers that are not level begin where their chart does.
