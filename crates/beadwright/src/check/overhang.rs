@@ -10,7 +10,7 @@ pub(super) const CHECK: Check = Check {
     name: "overhang",
     what: "parts of a layer that reach more than check.max_overhang beyond the layer below",
     why: "there is nothing to weld on: the bead drops off",
-    example: "layer 20: 34.0 mm² overhang the layer below by more than half a bead.",
+    example: "layer 20: 34.0 mm² overhang the layer below by more than 3.8 mm.",
     remedy: "reorient the part, or add stock below it to be machined away",
     find,
 };
