@@ -181,7 +181,7 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
 fn even(layers: &[Layer], profile: &Profile) -> anyhow::Result<Vec<Layer>> {
     anyhow::ensure!(
         !profile.layers.charts().any(Chart::goes_around),
-        "layers around an axis do not lie over one another as they are unrolled, so this command cannot build them (layers.chart)"
+        "unrolled layers around an axis do not lie over one another, so this command cannot build them (layers.chart)"
     );
     if let Some(layer) = layers.iter().find(|layer| layer.half.is_some()) {
         anyhow::bail!(

@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
     /// Unit of the scan's coordinates, if its file does not give it.
     #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", default_value = "mm")]
     scan_units: Units,
-    /// The scan is of the part's preform: what lies outside the part is to be milled off.
+    /// The scan shows the part's preform: what lies outside the part is to be milled off.
     #[arg(long)]
     preform: bool,
     /// The existing part that the plan was made with: both are placed as one.
@@ -139,7 +139,7 @@ fn print_built(out: &mut impl Write, built: &AsBuilt) -> anyhow::Result<()> {
     let cubic = |volume: f64| volume / 1e3;
     writeln!(
         out,
-        "{:.1} % of both together is in common: beads take up {:.1} of {:.1} cm³ of the part, and {:.1} cm³ outside it (counted in \
+        "{:.1} % of their joint volume is shared: beads take up {:.1} of {:.1} cm³ of the part, and {:.1} cm³ outside it (counted in \
          voxels of {:.2} mm; {:.1} cm³ are laid)",
         100.0 * built.agreement(),
         cubic(built.common),

@@ -1,4 +1,5 @@
-//! `beadwright directions`: which way is up for which part of a model, as a file of bodies for `plan --bodies`.
+//! `beadwright directions`: finds build directions for the pieces of a model and writes them as a file of bodies for
+//! `plan --bodies`.
 
 use crate::{file, model, profile, progress, say};
 use anyhow::Context;
@@ -59,7 +60,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         writeln!(out, "{}. {}", number + 1, sentence(division))?;
     }
     if found.is_empty() {
-        writeln!(out, "1. the same: no other direction spares much of it")?;
+        writeln!(out, "1. the same: no other direction avoids much of it")?;
         found.push(level);
     }
     if import.repair.open_edges > 0 {

@@ -107,7 +107,7 @@ mod space {
             _ = rustix::io::write(rustix::stdio::stderr(), line.as_bytes());
             low_level::exit(1);
         };
-        // Safety: the handler only writes bytes that are there already, and ends the process.
+        // Safety: the handler only writes bytes that already exist, and ends the process.
         #[expect(unsafe_code, reason = "no safe function says something when memory is out")]
         let registered = unsafe { low_level::register(SIGABRT, say) };
         _ = registered;

@@ -85,7 +85,7 @@ impl Clock {
         Self { begun, now: None, spent: Vec::new(), reported: None }
     }
 
-    /// Takes note of a step; once per stage, a sentence if it will take long.
+    /// Records a step; once per stage, returns a sentence if the stage will take long.
     fn step(&mut self, stage: Stage, fraction: f64, at: Instant) -> Option<String> {
         let since = match self.now {
             Some((current, since)) if current == stage => since,

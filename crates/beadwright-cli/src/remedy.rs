@@ -24,7 +24,7 @@ fn of_bodies(kind: &str) -> Option<&'static str> {
     }
 }
 
-/// Layers that are not level begin where their chart does.
+/// Layers that are not level begin where their chart does, so cutting and turning the part do not help.
 fn of_charted(kind: &str) -> Option<&'static str> {
     if lacks_metal_below(kind) {
         Some("--bodies divides the part into bodies that each have metal below.")

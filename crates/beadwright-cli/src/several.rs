@@ -103,7 +103,7 @@ pub(crate) struct Build {
     pub(crate) base: Option<Mesh>,
     /// Where each of several parts is placed.
     pub(crate) places: Vec<Place>,
-    /// Each of several parts by its name and by itself, the lowest first.
+    /// Each of several parts with its name, on its own, the lowest first.
     pub(crate) lowest_first: Vec<(String, Import)>,
 }
 

@@ -1,4 +1,4 @@
-//! What is known of a plan so far, put together from the planner's events.
+//! What is known of a plan, put together from the planner's events.
 
 use crate::planner::{Event, Failure};
 use crate::view3d::{Scanned, Scene};
@@ -153,7 +153,7 @@ impl PlanState {
         self.findings = None;
     }
 
-    /// Number of layers, as far as known.
+    /// Number of layers known so far.
     pub fn layer_count(&self) -> usize {
         let preview = self.preview.as_ref().map_or(0, |layer| layer.index + 1);
         self.header.as_ref().map_or(preview, |header| header.extent.layers).max(self.layers.len())

@@ -121,7 +121,7 @@ impl Studio {
         }
     }
 
-    /// The plan, as far as it has come.
+    /// The plan as far as it is made.
     pub fn plan(&self) -> &PlanState {
         &self.plans.own
     }

@@ -171,7 +171,7 @@ pub enum PlanFileError {
     Version(u32),
     /// Version and chart disagree on whether layers are level.
     #[error(
-        "this plan.json has version {0}, which does not go with layers.chart of its profile: layers that are not level are in version \
+        "this plan.json has version {0}, which does not fit layers.chart of its profile: layers that are not level are in version \
          {NEWEST}. Make the plan again with `beadwright plan`."
     )]
     Chart(u32),

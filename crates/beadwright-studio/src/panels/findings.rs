@@ -1,4 +1,4 @@
-//! What the checks found; a click goes there.
+//! What the checks found; a click shows the place.
 
 use super::words;
 use crate::known::{Known, View};

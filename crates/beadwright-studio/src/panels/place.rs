@@ -22,7 +22,7 @@ const HANDLES: [(Handle, &str, Color32); 3] = [
     (Handle::Turn, "turn-z", Color32::from_rgb(84, 140, 232)),
 ];
 
-/// What the camera shows in a part of the window.
+/// A part of the window with the camera that shows it.
 struct Sight<'a> {
     camera: &'a Camera,
     rect: Rect,

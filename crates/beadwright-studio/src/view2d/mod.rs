@@ -28,7 +28,7 @@ use heat::{VOID, image};
 use pen::Pen;
 use std::sync::Arc;
 
-/// The part of the layer in view: the middle of the view, mm, and its scale, points per mm.
+/// What of the layer is in view: the middle of the view, mm, and its scale, points per mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Eye {
     /// Middle of the view, mm.

@@ -142,14 +142,14 @@ impl Camera {
         self.middle() + self.right() * x + self.up() * y
     }
 
-    /// Turns about the target, following a drag by that many points.
+    /// Turns about the target, following a drag by this many points.
     pub fn orbit(&mut self, drag: DVec2) {
         const UPRIGHT: f64 = std::f64::consts::FRAC_PI_2;
         self.yaw = (self.yaw - drag.x * TURN_PER_POINT).rem_euclid(std::f64::consts::TAU);
         self.pitch = (self.pitch + drag.y * TURN_PER_POINT).clamp(-UPRIGHT, UPRIGHT);
     }
 
-    /// Moves so that the target follows a drag by that many points.
+    /// Moves so that the target follows a drag by this many points.
     pub fn pan(&mut self, drag: DVec2, size: DVec2) {
         let scale = self.height() / size.y;
         self.target += self.held.rotation * ((self.up() * drag.y - self.right() * drag.x) * scale);

@@ -47,7 +47,7 @@ pub struct Grip {
     pub handle: Handle,
     /// Where it was grabbed in the picture, points.
     pub from: DVec2,
-    /// What it has done so far.
+    /// The motion so far.
     pub moved: Moved,
 }
 

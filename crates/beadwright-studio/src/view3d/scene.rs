@@ -139,7 +139,7 @@ impl Scene {
         self.layers.get(index)?.as_ref()
     }
 
-    /// The layers that are there, with their indices.
+    /// The layers that have come, with their indices.
     pub(super) fn present(&self) -> impl DoubleEndedIterator<Item = (usize, &Arc<LayerBeads>)> {
         self.layers.iter().enumerate().filter_map(|(i, layer)| Some((i, layer.as_ref()?)))
     }

@@ -79,7 +79,7 @@ pub const CHECKS: [Check; 26] = [
     dense_points::CHECK,
 ];
 
-/// Checks whose findings the plan warns of by itself.
+/// Checks whose findings `plan` already reports as warnings.
 const ALSO_WARNED: [(&Check, &[WarningKind]); 3] = [
     (&overhang::CHECK, &[WarningKind::Overhang, WarningKind::InTheAir, WarningKind::OverUnwelded]),
     (&layers::CHECK, &[WarningKind::EmptyLayer, WarningKind::HighStart, WarningKind::NothingBelow]),
@@ -101,7 +101,7 @@ const SERIOUS: [&Check; 9] = [
 
 /// A check.
 pub struct Check {
-    /// The name people type.
+    /// The name that users type.
     pub name: &'static str,
     /// What it looks for.
     pub what: &'static str,

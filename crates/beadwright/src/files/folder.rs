@@ -144,7 +144,7 @@ impl Folder {
             return Err(io::ErrorKind::PermissionDenied.into());
         }
         swap(&new, &self.folder)?;
-        // What somebody has put there in the meantime stays, too. From here on nothing can fail: the exchange is done.
+        // What others have put there in the meantime stays, too. From here on nothing can fail: the exchange is done.
         for entry in fs::read_dir(&new).into_iter().flatten().filter_map(Result::ok) {
             let place = self.folder.join(entry.file_name());
             if others(&entry.file_name().to_string_lossy()) && fs::symlink_metadata(&place).is_err() {

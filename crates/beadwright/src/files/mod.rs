@@ -137,7 +137,7 @@ impl Programs {
         chunks
     }
 
-    /// Takes note of a layer that is in no program.
+    /// Records a layer that is in no program.
     fn pass_over(&mut self, layer: &Layer) {
         self.programmers.iter_mut().for_each(|programmer| programmer.pass_over(layer));
     }
@@ -319,7 +319,7 @@ impl PlanFiles {
         self.note(&chunks);
         let names: Vec<String> = self.names.into_iter().chain([METRICS, REPORT].map(str::to_owned)).collect();
         let mut metrics = summary.json(total);
-        // So that the next plan in this folder knows which files are those of this one.
+        // So that the next plan in this folder knows which files belong to this one.
         metrics["files"] = serde_json::json!(names);
         if let Some(totals) = &totals {
             metrics["programs"] = serde_json::json!(totals);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 const PREFIX: &str = ".beadwright-";
-/// While files are moved one by one: the names of those that are replaced.
+/// The names of the files being replaced, while files are moved one by one.
 const JOURNAL: &str = "moving";
 /// The journal while it is written.
 const DRAFT: &str = "draft";
@@ -68,7 +68,7 @@ fn moves(stage: &Path, target: &Path, old: &[&str], new: &[&str]) -> Vec<(PathBu
     out.chain(into).collect()
 }
 
-/// What is locked: the folder itself, which is there as long as anything in it.
+/// What is locked: the folder itself, which exists as long as anything in it.
 #[cfg(unix)]
 fn open_lock(stage: &Path) -> io::Result<File> {
     File::open(stage)
@@ -105,7 +105,7 @@ fn complete(stage: &Path, target: &Path) -> io::Result<()> {
     let new: Vec<&str> = new.iter().map(String::as_str).collect();
     for (from, to) in moves(stage, target, &old, &new) {
         match fs::rename(from, to) {
-            // Somebody has taken it away in the meantime.
+            // It has been taken away in the meantime.
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             done => done?,
         }

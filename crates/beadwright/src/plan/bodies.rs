@@ -1,5 +1,5 @@
-//! Parts that are welded as several bodies, one after another (`layers.bodies`): each is planned as a part of its own, in the
-//! coordinates of its own chart, on the metal of those before it.
+//! Parts that are welded as several bodies, one after another (`layers.bodies`): each is planned as a part of its own,
+//! in the coordinates of its own chart, on the metal of the bodies before it.
 
 use super::beside::{Beside, Watch};
 use super::charted::{self, Unrolled};
@@ -28,7 +28,7 @@ struct Own<'a> {
 /// Plans a part as the bodies that its profile names, and hands all layers to `sink`, numbered consecutively.
 ///
 /// # Errors
-/// [`PlanError`], including [`PlanError::Body`] for a body of which nothing is there, or that cannot be planned.
+/// [`PlanError`], including [`PlanError::Body`] for a body that contains nothing of the part or cannot be planned.
 pub(super) fn bodies_into<S: Sink + Send>(
     name: &str,
     part: PartRef,
@@ -141,7 +141,7 @@ fn welded_twice(whole: &Mesh, bodies: &[Own<'_>]) -> Vec<String> {
         (volume > MISSING * whole.volume().abs()).then(|| {
             format!(
                 "Bodies \"{}\" and \"{}\" have {:.1} cm³ in common, around x {:.1} y {:.1} z {:.1} mm, which would be welded twice; \
-                 the second time, the torch would run into finished metal. Part them by planes (within).",
+                 the second time, the torch would run into finished metal. Separate them by planes (within).",
                 own.body.name,
                 other.body.name,
                 volume / 1e3,

@@ -66,8 +66,8 @@ pub(super) fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile
     weld_sections(&sections, half, index, slab, profile)
 }
 
-/// Centre-lines of walls as passes, where `half` gives half the width at a place (mm); the area they cover stands in for the
-/// slice.
+/// Centre-lines of walls as passes; `half` gives half the width at a place (mm), and the area that they cover takes the
+/// place of the slice.
 fn weld_sections(
     sections: &[Section],
     half: impl Fn(DVec2) -> f64,

@@ -40,7 +40,7 @@ pub(super) struct Emitter<'a, S> {
     pub(super) grown: Option<Stack>,
     /// Outlines of the welded islands of the layer below.
     pub(super) below: Vec<Polygon>,
-    /// Those of the layer below that one.
+    /// Outlines of the layer below that one.
     pub(super) before: Vec<Polygon>,
     /// Height of the middle of the layer below, mm.
     pub(super) below_middle: f64,

@@ -1,4 +1,5 @@
-//! Parts that are welded one after another: one plan, whose layers are those of the first part, then of the second, and so on.
+//! Parts that are welded one after another, as one plan: the layers of the first part, then those of the second, and so
+//! on.
 
 use super::clearance::{Clearance, Close, Watch};
 use super::row::{NUMBERED_APART, Row};

@@ -37,7 +37,7 @@ const RESTS: f64 = 0.05;
 pub(super) struct Support {
     /// The passes of the layer below.
     passes: Vec<Pass>,
-    /// Its outlines, and those of them that were left out because they overhang.
+    /// Its outlines, and which of them were left out because they overhang.
     islands: Vec<Polygon>,
     left_out: Vec<Polygon>,
     /// Passes and outlines of the layer below that one.

@@ -138,7 +138,7 @@ impl Bands {
         })
     }
 
-    /// The island around which a pass goes.
+    /// The island that a pass goes around.
     fn around(&self, pass: &Pass) -> Option<&Bounds> {
         let start = pass.start().filter(|start| start.is_finite())?;
         self.band_at(start.truncate())

@@ -150,7 +150,7 @@ impl Chunk {
         let segments = layers.iter().map(|(_, layer)| layer.len()).sum::<usize>();
         let mut beads: Vec<Bead> = Vec::with_capacity(segments + 1);
         let (mut caps, mut travels, mut dots): (Vec<Cap>, Vec<Point>, Vec<Dot>) = Default::default();
-        // A bead that is not drawn goes before the first one.
+        // A bead that is not drawn precedes the first one.
         let pad = usize::from(begin.beads == 0);
         beads.resize(pad, Bead::zeroed());
         let mut rough = beads.clone();
