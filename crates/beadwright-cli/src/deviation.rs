@@ -139,8 +139,8 @@ fn print_built(out: &mut impl Write, built: &AsBuilt) -> anyhow::Result<()> {
     let cubic = |volume: f64| volume / 1e3;
     writeln!(
         out,
-        "{:.1} % of their joint volume is shared: beads take up {:.1} of {:.1} cm³ of the part, and {:.1} cm³ outside it (counted in \
-         voxels of {:.2} mm; {:.1} cm³ are laid)",
+        "{:.1} % of their joint volume is shared: beads take up {:.1} of {:.1} cm³ of the part, and {:.1} cm³ outside \
+         it (counted in voxels of {:.2} mm; {:.1} cm³ are laid)",
         100.0 * built.agreement(),
         cubic(built.common),
         cubic(built.part),

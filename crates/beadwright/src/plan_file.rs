@@ -171,8 +171,8 @@ pub enum PlanFileError {
     Version(u32),
     /// Version and chart disagree on whether layers are level.
     #[error(
-        "this plan.json has version {0}, which does not fit layers.chart of its profile: layers that are not level are in version \
-         {NEWEST}. Make the plan again with `beadwright plan`."
+        "this plan.json has version {0}, which does not fit layers.chart of its profile: layers that are not level \
+         are in version {NEWEST}. Make the plan again with `beadwright plan`."
     )]
     Chart(u32),
     /// Not in millimetres.

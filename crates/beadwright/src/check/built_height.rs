@@ -9,8 +9,8 @@ pub(super) const CHECK: Check = Check {
            or more",
     why: "the torch stays at the planned heights: its stick-out grows or shrinks with every layer, until the arc fails; serious \
           where metal ends more than one and a half stick-outs (process.ctwd) away",
-    example: "after the last layer 35 % of the area lies within one layer height (2.00 mm) of the plan, on average 13.95 mm \
-              below it, at most 0.31 mm above and 23.78 mm below.",
+    example: "after the last layer 35 % of the area lies within one layer height (2.00 mm) of the plan, on average \
+              13.95 mm below it, at most 0.31 mm above and 23.78 mm below.",
     remedy: "set layers.level = true so that layers are as high as their metal, if it is not set, or measure the layers as \
              they are built and correct the rest (beadwright adapt)",
     find,

@@ -63,8 +63,8 @@ impl Beside {
             let does = if *travels { "travels over" } else { "welds" };
             format!(
                 "The torch would hit {finished} while it {does} \"{welded}\" at x {:.1} y {:.1} z {:.1} mm: near x {:.1} y {:.1} z {:.1} mm it \
-                 needs {needs:.1} mm beside its axis and has {has:.1} mm (section [torch]). Weld the bodies in another order, or divide \
-                 the part elsewhere (layers.bodies).",
+                 needs {needs:.1} mm beside its axis and has {has:.1} mm (section [torch]). Weld the bodies in \
+                 another order, or divide the part elsewhere (layers.bodies).",
                 tip.x, tip.y, tip.z, metal.x, metal.y, metal.z
             )
         })

@@ -115,7 +115,8 @@ pub enum PlanError<E> {
     NoSolid,
     /// A preform for layers that are not level.
     #[error(
-        "a preform adds metal below the overhangs of level layers. Leave layers.chart and layers.bodies out, or plan the part without a preform."
+        "a preform adds metal below the overhangs of level layers. Leave layers.chart and layers.bodies out, or plan \
+         the part without a preform."
     )]
     PreformOfChart,
     /// Curves with layers that are not level.

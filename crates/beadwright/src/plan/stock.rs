@@ -80,8 +80,9 @@ fn lost(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<String>, C
     let longest = slices.iter().filter_map(dropped).max_by(|a, b| a.0.total_cmp(&b.0));
     Ok(longest.filter(|(length, _)| *length > TORN * profile.bead.width).map(|(length, at)| {
         format!(
-            "The preform lacks part of the solid: as it stands, contours of its open surface do not close and are left out, the longest \
-             {length:.0} mm near x {:.1} y {:.1} z {:.1} mm. Turn the part so that it stands on its opening, or mend the model.",
+            "The preform lacks part of the solid: as it stands, contours of its open surface do not close and are \
+             left out, the longest {length:.0} mm near x {:.1} y {:.1} z {:.1} mm. Turn the part so that it stands on \
+             its opening, or mend the model.",
             at.x, at.y, at.z
         )
     }))
