@@ -16,8 +16,8 @@ pub(crate) struct Arguments {
     /// plan.json, toolpaths in 3MF, or a program in G-code (also a printer's), KRL, RAPID, FANUC TP, INFORM or
     /// URScript; if it has several files, the main one.
     file: PathBuf,
-    /// Part that the program was made for, as STL; without it a program has no outline, and no voids or overfill are
-    /// reported.
+    /// Model of the part that the program was made for, as for `plan`; without it a program has no outline, and no
+    /// voids or overfill are reported.
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
     /// Unit of the part's coordinates.

@@ -49,7 +49,7 @@ pub struct Metrics {
     pub heat_input_j_per_mm: Option<f64>,
     /// Sum of the slice areas, mm².
     pub slice_area_mm2: f64,
-    /// Sum of the areas within reach of a bead, mm².
+    /// Sum of the areas that beads cover, mm².
     pub planned_area_mm2: f64,
     /// Volume of the layers, mm³.
     pub part_volume_mm3: f64,
