@@ -16,7 +16,7 @@ cd "$work"
 cat > "$page" <<'END'
 # Gallery
 
-Twelve parts as this version plans them. `beadwright example` makes the models, so every picture can be made again by the
+Twelve parts as this version plans them. `beadwright example` makes the models, so every picture can be remade with the
 command above it; `docs/gallery.sh` makes them all. Contours are blue, lines of infill orange, fills of pockets purple, walls
 green; a dot is green where the arc starts and red where it ends.
 

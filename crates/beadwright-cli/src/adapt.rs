@@ -63,7 +63,7 @@ impl Limits {
 
 #[derive(Clone, Copy, ValueEnum)]
 enum How {
-    /// Its coordinates are those of the part.
+    /// Not moved: its coordinates are those of the part.
     AsIs,
     /// The plate in the scan is z = 0.
     Plate,
@@ -185,7 +185,7 @@ fn sentences(
 /// A build with the layers that follow.
 struct Adapted<'a> {
     plan: &'a PlanFile,
-    /// Layers that are built.
+    /// Number of layers that are built.
     number: usize,
     seen: &'a Seen,
     followed: &'a Followed,

@@ -23,7 +23,7 @@ use table::{Format, Table};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Models, each planned by itself.
+    /// Models, each planned separately.
     #[arg(required = true, value_name = "MODEL")]
     files: Vec<PathBuf>,
     #[command(flatten)]
@@ -62,10 +62,10 @@ pub(crate) struct Arguments {
     threads: Option<u16>,
 }
 
-/// No batch has more plans than this.
+/// Maximum number of plans in a batch.
 const MOST_PLANS: usize = 100_000;
 
-/// Plans that nobody should weld as they are.
+/// Plans that should not be welded as they are.
 #[derive(Debug, thiserror::Error)]
 #[error("{unfit} of {plans} plans should not be welded as they are; their rows say why.")]
 pub(crate) struct Unfit {

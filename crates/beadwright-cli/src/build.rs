@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     feedback: Vec<Kind>,
     #[command(flatten)]
     limits: adapt::Limits,
-    /// Let walls grow less on warm metal, as `bead.by_heat` says, even though the plan was made without it.
+    /// Make walls rise less on warm metal, as `bead.by_heat` says, even though the plan was made without it.
     #[arg(long)]
     heat: bool,
     /// Seed of the random numbers.
@@ -47,13 +47,13 @@ pub(crate) struct Arguments {
 /// Errors, as fractions of the metal: 0.1 is ±10 %.
 #[derive(clap::Args)]
 struct Noise {
-    /// Deviation of the metal from pass to pass.
+    /// Standard deviation of the metal from pass to pass.
     #[arg(long, default_value_t = 0.1, value_parser = parse_part)]
     noise: f64,
-    /// Deviation of the metal along a pass.
+    /// Standard deviation of the metal along a pass.
     #[arg(long, default_value_t = 0.1, value_parser = parse_part)]
     along: f64,
-    /// Length over which the error along a pass falls to 1/e of its correlation, mm.
+    /// Distance along a pass over which the correlation of its error falls to 1/e, mm.
     #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = parse_correlation)]
     correlation: f64,
     /// Growth of the metal from the first to the last layer.
@@ -62,7 +62,7 @@ struct Noise {
     /// Pass whose arc fails to burn, counted from 1 through the whole build.
     #[arg(long, value_name = "PASS", value_parser = clap::value_parser!(u32).range(1..))]
     lost_pass: Option<u32>,
-    /// Deviation of a point of a scan, mm.
+    /// Standard deviation of a point of a scan, mm.
     #[arg(long, default_value_t = 0.0, value_name = "MM", value_parser = parse_scan)]
     scan_noise: f64,
 }
@@ -181,7 +181,7 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
 fn even(layers: &[Layer], profile: &Profile) -> anyhow::Result<Vec<Layer>> {
     anyhow::ensure!(
         !profile.layers.charts().any(Chart::goes_around),
-        "layers around an axis do not lie over one another as they are unrolled, so this command cannot build them (layers.chart)"
+        "unrolled layers around an axis do not lie over one another, so this command cannot build them (layers.chart)"
     );
     if let Some(layer) = layers.iter().find(|layer| layer.half.is_some()) {
         anyhow::bail!(

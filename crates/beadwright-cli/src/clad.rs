@@ -31,13 +31,13 @@ pub(crate) struct Arguments {
     /// Clad a pipe, a bore or a shaft: the axis and the radius of the face, such as axis=z,radius=30 or axis=x,radius=40,side=inner.
     #[arg(long, value_name = "CYLINDER")]
     around: Option<String>,
-    /// Where the cladding begins along the axis, mm; where the face does if left out.
+    /// Where the cladding begins along the axis, mm; at the beginning of the face if left out.
     #[arg(long, value_name = "MM", requires = "around", allow_hyphen_values = true)]
     from: Option<f64>,
-    /// Where it ends along the axis, mm.
+    /// Where it ends along the axis, mm; at the end of the face if left out.
     #[arg(long, value_name = "MM", requires = "around", allow_hyphen_values = true)]
     to: Option<f64>,
-    /// Model of the cladding to write (STL); its bodies come beside it, as NAME.bodies.toml.
+    /// Model of the cladding to write (STL); its bodies are written next to it, as NAME.bodies.toml.
     #[arg(long, short, value_name = "FILE", default_value = "cladding.stl")]
     output: PathBuf,
     #[command(flatten)]
@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     write(arguments, &cladding)
 }
 
-/// Cladding of the base, lifted by some mm.
+/// The cladding of the base, which is lifted by `lifted` mm.
 fn made(arguments: &Arguments, base: &Mesh, lifted: f64, profile: &Profile, task: &Task) -> anyhow::Result<Cladding> {
     let mut base = base.clone();
     base.vertices.iter_mut().for_each(|p| p.z += lifted);

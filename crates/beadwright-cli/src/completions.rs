@@ -1,4 +1,4 @@
-//! `beadwright completions` and `beadwright man`: what shells and the manual know of the command.
+//! `beadwright completions` and `beadwright man`: completion scripts and manual pages.
 
 use anyhow::Context;
 use beadwright::files::write_file;
@@ -20,7 +20,7 @@ pub(crate) struct Man {
     output: Option<PathBuf>,
 }
 
-/// Prints what the shell is to read.
+/// Prints the shell's completion script.
 pub(crate) fn completions<A: CommandFactory>(arguments: &Completions) -> anyhow::Result<()> {
     let mut text = Vec::new();
     clap_complete::generate(arguments.shell, &mut A::command(), "beadwright", &mut text);

@@ -16,15 +16,15 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
-    /// Scan, in the coordinates of the part as it is planned, with z = 0 on the plate: a surface or cloud of points (PLY,
-    /// STL, OBJ, 3MF, AMF), lines of x, y, z (CSV, XYZ), or a height map. It need not be closed. Or a plan.json: what its beads
-    /// build, with its own profile.
+    /// Scan, in the coordinates of the part as it is planned, with z = 0 on the plate: a surface or cloud of points
+    /// (PLY, STL, OBJ, 3MF, AMF), lines of x, y, z (CSV, XYZ), or a height map. It need not be closed. Or a plan.json:
+    /// then the shape that its beads build is compared, with its own profile.
     #[arg(value_name = "SCAN|PLAN")]
     scan: PathBuf,
     /// Unit of the scan's coordinates, if its file does not give it.
     #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", default_value = "mm")]
     scan_units: Units,
-    /// The scan is of the part's preform: what lies outside the part is to be milled off.
+    /// The scan shows the part's preform: what lies outside the part is to be milled off.
     #[arg(long)]
     preform: bool,
     /// The existing part that the plan was made with: both are placed as one.
@@ -37,10 +37,10 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// A plan that has less than this in common with a part is that of another part, or of one placed elsewhere.
+/// A plan that shares less than this fraction with a part is that of another part, or of one placed elsewhere.
 const ELSEWHERE: f64 = 0.5;
 
-/// How a part lies as it was planned.
+/// Advice on how to place the part as it was planned.
 const PLACED: &str = "place the part as it was for the plan, with its --units, --scale, --turn, --centre, --shift, --lay-flat, --orient \
                       and --onto.";
 
@@ -139,8 +139,8 @@ fn print_built(out: &mut impl Write, built: &AsBuilt) -> anyhow::Result<()> {
     let cubic = |volume: f64| volume / 1e3;
     writeln!(
         out,
-        "{:.1} % of both together is in common: beads take up {:.1} of {:.1} cm³ of the part, and {:.1} cm³ outside it (counted in \
-         voxels of {:.2} mm; {:.1} cm³ are laid)",
+        "{:.1} % of their joint volume is shared: beads take up {:.1} of {:.1} cm³ of the part, and {:.1} cm³ outside \
+         it (counted in voxels of {:.2} mm; {:.1} cm³ are laid)",
         100.0 * built.agreement(),
         cubic(built.common),
         cubic(built.part),

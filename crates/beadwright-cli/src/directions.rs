@@ -1,4 +1,5 @@
-//! `beadwright directions`: which way is up for which part of a model, as a file of bodies for `plan --bodies`.
+//! `beadwright directions`: finds build directions for the pieces of a model and writes them as a file of bodies for
+//! `plan --bodies`.
 
 use crate::{file, model, profile, progress, say};
 use anyhow::Context;
@@ -18,7 +19,7 @@ pub(crate) struct Arguments {
     /// Largest angle between a direction and the vertical, degrees: what the positioner can tilt, or the torch can lean.
     #[arg(long, value_name = "DEG", default_value_t = 90.0, value_parser = parse_tilt)]
     tilt: f64,
-    /// Which of the divisions to write, from 1.
+    /// Which of the divisions found to write, counted from 1.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     choice: u64,
     /// File of bodies to write; standard output if left out.
@@ -59,7 +60,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         writeln!(out, "{}. {}", number + 1, sentence(division))?;
     }
     if found.is_empty() {
-        writeln!(out, "1. the same: no other direction spares much of it")?;
+        writeln!(out, "1. the same: no other direction avoids much of it")?;
         found.push(level);
     }
     if import.repair.open_edges > 0 {

@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(format) = export::layer_format(&extension) {
         anyhow::ensure!(
             !standard || arguments.layer.is_some(),
-            "--output -: one layer is drawn there; --layer says which"
+            "--output -: only one layer can be drawn there; choose it with --layer"
         );
         return drawings(arguments, plan, &source.profile(&arguments.wanted)?, format);
     }

@@ -49,7 +49,7 @@ pub(crate) fn model(path: &Path) -> anyhow::Result<Vec<u8>> {
 
 /// All of standard input.
 fn standard_input() -> anyhow::Result<Vec<u8>> {
-    // Whoever comes while another reads waits for what that one keeps.
+    // A second caller waits here for what the first one keeps.
     let mut input = std::io::stdin().lock();
     if let Some(bytes) = STANDARD_INPUT.get() {
         return Ok(bytes.clone());

@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
     wanted: profile::Wanted,
 }
 
-/// The curve of a file is followed this closely, mm.
+/// Accuracy to which the curve of a file is followed, mm.
 const CHORD: f64 = 0.05;
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// From the sections of a part.
+/// The guide found from the sections of a part.
 fn found(arguments: &Arguments) -> anyhow::Result<Guide> {
     let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
     let profile = profile::load(name, &arguments.wanted.set)?;
@@ -67,7 +67,7 @@ fn found(arguments: &Arguments) -> anyhow::Result<Guide> {
     Ok(Guide::through(guide.points())?)
 }
 
-/// The curve of an IGES file; none where it holds no curves but surfaces.
+/// The curve of an IGES file; `None` where it holds surfaces and no curves.
 fn iges(path: &Path) -> anyhow::Result<Option<Vec<DVec3>>> {
     let Some(drawing) = model::read_iges(path, &file::model(path)?)? else { return Ok(None) };
     let curves: Vec<_> = drawing.independent_curves().collect();

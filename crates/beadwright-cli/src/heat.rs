@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (task, bar) = progress::task()?;
     let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
     let usual = Interpass { max_temperature: 0.0, min_temperature: None, reorder: true, along: false };
-    // Without --limit, the plan has the waits of its own limit.
+    // Without --limit, the plan keeps the waits for its own limit.
     let limit = |max_temperature| Interpass { max_temperature, ..profile.interpass.unwrap_or(usual) };
     let interpass = arguments.limit.map(limit);
     if let (Some(limits), Some(heat)) = (&interpass, &profile.heat) {
@@ -82,7 +82,7 @@ fn print(
     if history.voxel > wanted * 1.001 {
         writeln!(
             out,
-            "warning: voxels of {wanted:.1} mm would be more than {MOST_VOXELS}; larger ones are less accurate."
+            "warning: more than {MOST_VOXELS} voxels of {wanted:.1} mm would be needed; larger ones are less accurate."
         )?;
     }
     let Some((layer, pass, hottest)) = history.hottest_start() else { return Ok(()) };

@@ -63,13 +63,13 @@ enum Command {
     Plan(plan::Arguments),
     /// Make the preform of a model: the part plus the stock that is milled off afterwards, with weights, hours and prices.
     Preform(preform::Arguments),
-    /// Find directions in which as little as possible of a part overhangs: around a hub, along a bent tube, or in pieces cut by planes;
-    /// written as a file of bodies for `plan --bodies`.
+    /// Find build directions in which as little as possible of a part overhangs: around a hub, along a bent tube, or in
+    /// pieces cut by planes; written as a file of bodies for `plan --bodies`.
     Directions(directions::Arguments),
     /// Print the guide curve of a bent part, to which its layers are perpendicular, for plan --chart: found in a bent tube or bar that
     /// stands on one end, or read from a curve (IGES, or a CSV table with the columns x, y, z in mm).
     Guide(guide::Arguments),
-    /// Write the surface of a model as one on which layers are stacked (a file for `plan --bodies`).
+    /// Write the surface of a model as one to stack layers on (a file of bodies for `plan --bodies`).
     Surface(surface::Arguments),
     /// Make a model of the cladding of a base, over its surface or around a pipe, with its bodies for `plan --onto`.
     Clad(clad::Arguments),
@@ -88,7 +88,7 @@ enum Command {
     Adapt(adapt::Arguments),
     /// Compare a scan of the built part with the part: how far its surface lies outside and inside.
     Deviation(deviation::Arguments),
-    /// Simulate a build with errors in the height model, to see what feedback from scans is worth.
+    /// Build a plan in the height model, with errors, to see how much feedback from scans helps.
     Build(build::Arguments),
     /// Check whether a robot can weld a plan: joint angles, margins, and a better place for the part.
     Reach(reach::Arguments),

@@ -9,11 +9,11 @@ use sysinfo::{MemoryRefreshKind, ProcessRefreshKind, ProcessesToUpdate, RefreshK
 static LIMIT: OnceLock<u64> = OnceLock::new();
 static EXCEEDED: AtomicBool = AtomicBool::new(false);
 
-/// Maximum part of the machine's memory that is used by default.
+/// Maximum fraction of the machine's memory that is used by default.
 const PART: f64 = 0.75;
-/// Beyond this multiple of the limit, or this time after it was reached, the run is ended without waiting for it.
+/// Beyond this multiple of the limit, or this long after it was reached, the run is killed without further waiting.
 const PATIENCE: (f64, Duration) = (1.15, Duration::from_secs(3));
-/// Time between two looks.
+/// Time between two checks.
 const PAUSE: Duration = Duration::from_millis(20);
 
 /// Most bytes that may be used.
@@ -85,7 +85,8 @@ fn too_much(limit: u64, remedy: &str) -> String {
     )
 }
 
-/// What the shell allows (`ulimit -v`): where an allocation fails, Rust aborts, and the sentence is said on the way out.
+/// The limit of the shell (`ulimit -v`): if an allocation fails, Rust aborts, and the sentence is printed on the way
+/// out.
 #[cfg(unix)]
 mod space {
     use rustix::process::{Resource, getrlimit};
@@ -94,7 +95,7 @@ mod space {
 
     pub(super) const ULIMIT: &str = "ulimit -v KB";
 
-    /// What the shell allows, bytes.
+    /// The limit of the shell, bytes.
     pub(super) fn limit() -> Option<u64> {
         getrlimit(Resource::As).current
     }
@@ -106,7 +107,7 @@ mod space {
             _ = rustix::io::write(rustix::stdio::stderr(), line.as_bytes());
             low_level::exit(1);
         };
-        // Safety: the handler only writes bytes that are there already, and ends the process.
+        // Safety: the handler only writes bytes that already exist, and ends the process.
         #[expect(unsafe_code, reason = "no safe function says something when memory is out")]
         let registered = unsafe { low_level::register(SIGABRT, say) };
         _ = registered;

@@ -89,7 +89,7 @@ fn parse_shift(text: &str) -> Result<DVec2, String> {
     lengths.ok_or_else(|| "two lengths in mm are expected, such as 250,-40".to_owned())
 }
 
-/// That many numbers between commas.
+/// `N` numbers separated by commas.
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let numbers = text.split(',').map(|number| number.trim().parse().ok().filter(|number: &f64| number.is_finite()));
     numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
@@ -104,7 +104,7 @@ pub(crate) fn read_iges(path: &Path, bytes: &[u8]) -> anyhow::Result<Option<Iges
 }
 
 impl Model {
-    /// A model as it lies in its file.
+    /// A model placed as it is in its file.
     pub(crate) fn of(path: &Path) -> Self {
         let placing = Placing {
             units: None,
@@ -119,7 +119,7 @@ impl Model {
         Self::placed_so(path, &placing)
     }
 
-    /// A model placed as asked for.
+    /// A model placed as `placing` says.
     pub(crate) fn placed_so(path: &Path, placing: &Placing) -> Self {
         Self { model: path.to_owned(), placing: placing.clone() }
     }
@@ -201,7 +201,7 @@ impl Placing {
         self.lay_flat || self.orient
     }
 
-    /// How a part that is placed so is to be turned.
+    /// How a part placed in this way is to be turned.
     fn turn_for(
         &self,
         placement: &Placement,

@@ -15,7 +15,7 @@ use beadwright::task::Task;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Plans a model, or several; each by itself where there is to be a program for each.
+/// Plans one model or several, each on its own if each is to have its own program.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     plan::prepare(arguments)?;
     if arguments.several.programs == Programs::Parts { each(arguments) } else { plan::run(arguments) }

@@ -51,8 +51,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "sides|centre", value_parser = ["sides", "centre"])]
     curves: Option<String>,
     /// Shape of layers that are not level: around an axis, such as cylinder:axis=z,radius=36; on a cone, such as
-    /// cone:axis=-z,tip=0/0/90,angle=30; or perpendicular to a direction, such as plane:up=1/0/1. In mm and degrees, in the
-    /// coordinates of the part as it is placed on the table.
+    /// cone:axis=-z,tip=0/0/90,angle=30; perpendicular to a direction, such as plane:up=1/0/1, or to a curve, as
+    /// `beadwright guide` prints it. In mm and degrees, in the coordinates of the part as it is placed on the table.
     #[arg(long, value_name = "KIND:KEY=VALUE,...", value_parser = parse_chart)]
     chart: Option<Chart>,
     /// Weld the part as several bodies, one after another, each with its own shape of layers: a TOML file with a [[body]] table for each.
@@ -198,7 +198,7 @@ impl Arguments {
         })
     }
 
-    /// The profile of that name with what was asked for.
+    /// The profile of that name, changed as the arguments say.
     pub(crate) fn profile(&self, name: &str) -> anyhow::Result<Profile> {
         let mut profile = profile::load(name, &self.settings())?;
         if let Some(path) = &self.bodies {
@@ -226,7 +226,7 @@ impl Arguments {
         profile::programs(&profile.posts, &base, &job)
     }
 
-    /// What is asked of the profile besides its name.
+    /// Changes to the profile that the arguments ask for.
     fn settings(&self) -> Vec<String> {
         let strategy = self.strategy.iter().map(|s| format!("fill.strategy=\"{s}\""));
         let literal = self.literal.then(|| "hybrid.literal=true".to_owned());
@@ -248,7 +248,7 @@ pub(crate) fn prepare(arguments: &Arguments) -> anyhow::Result<()> {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut profile = arguments.profile(&arguments.profile)?;
     let part = arguments.name();
-    // A fault of the profile is said before anything is read.
+    // A fault of the profile is reported before anything is read.
     arguments.programs(&arguments.profile, &profile, &part, 0.0)?;
 
     let (task, bar) = progress::task()?;
@@ -337,7 +337,7 @@ fn selection_exists(selection: &Selection, layers: usize) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// Says how large a large plan will be, before it is made.
+/// Prints how large a large plan will be, before it is made.
 pub(crate) fn say_size(mesh: &Mesh, profile: &Profile) -> std::io::Result<()> {
     let Some(Expected { layers, layer_length, .. }) = plan::expected(mesh, profile).filter(|expected| expected.large)
     else {
@@ -366,7 +366,7 @@ pub(crate) fn refused(error: PlanError<anyhow::Error>, model: &Path) -> anyhow::
     }
 }
 
-/// Programs that nobody should start.
+/// Programs that should not be started.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "no program was written, since it should not be started:\n{}\n{}--allow-findings writes it anyway.",
@@ -389,7 +389,7 @@ pub(crate) struct Files<'a> {
     pictures: &'a [usize],
     profile: &'a Profile,
     judge: Option<Judge>,
-    /// What the programs weld.
+    /// What the programs weld of the plan.
     selection: Selection,
 }
 
@@ -415,12 +415,12 @@ impl<'a> Files<'a> {
         self.files.as_ref().and_then(PlanFiles::totals).cloned()
     }
 
-    /// How the built part ends against the plan, once checked.
+    /// How the built part ends relative to the plan, once checked.
     pub(crate) fn built(&self) -> Option<Growth> {
         self.files.as_ref().and_then(PlanFiles::built).copied()
     }
 
-    /// What people must know about the programs: sentences.
+    /// What users must know about the programs, as sentences.
     pub(crate) fn notes(&self) -> Vec<String> {
         self.files.iter().flat_map(PlanFiles::notes).collect()
     }
@@ -431,7 +431,7 @@ impl<'a> Files<'a> {
         Ok(files.check(task)?)
     }
 
-    /// Writes only the report, which shows the places because of which there is no program; returns its path.
+    /// Writes only the report, which shows the places at fault; returns its path.
     fn refuse(
         self,
         summary: &Summary,

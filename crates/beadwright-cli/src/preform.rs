@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let context = || format!("{}", arguments.model.model.display());
     is_closed(&import.mesh, &profile).map_err(refused).with_context(context)?;
     let (settings, rates) = (profile.preform_settings(), profile.preform_rates());
-    // The one goes from step to step, the other looks at many ways up at once.
+    // The first goes from step to step, the second evaluates many orientations in parallel.
     let (stocked, ways) = rayon::join(
         || Stocked::of(Part::Mesh(import.clone()), &profile, &task),
         || orient::best(&import.mesh, &settings, &rates, &task),
@@ -103,10 +103,10 @@ fn table(faces: &[Face]) -> String {
     text
 }
 
-/// A part is turned for this part of its cost.
+/// A part is turned if that saves this fraction of its cost.
 const WORTH_TURNING: f64 = 0.01;
 
-/// What there is to say of a preform.
+/// The figures of a preform: name, and value with its unit.
 fn rows(figures: &Figures, profile: &Profile) -> Vec<(&'static str, String)> {
     let currency = &profile.cost.currency;
     let ratio = |kg: f64, ratio: f64| format!("{kg:.3} kg, {ratio:.2} kg bought per kg of the part");

@@ -107,7 +107,7 @@ fn save(text: &str, path: &Path) -> anyhow::Result<()> {
     Ok(write_file(&path.with_file_name(SCHEMA), format!("{:#}\n", Profile::schema()).as_bytes())?)
 }
 
-/// Which profile a plan or a program is read with.
+/// Which profile is used for a plan or a program.
 #[derive(clap::Args, Default)]
 pub(crate) struct Wanted {
     /// Profile: a built-in name or a TOML file; if left out, that of the plan, the one that the program names, or
@@ -132,7 +132,7 @@ pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile
     if settings.is_empty() { Ok(parsed) } else { with_settings(text, &folder(profile), settings) }
 }
 
-/// The file that a word means: a path, or the name of one of the user's own profiles.
+/// The file that `profile` stands for: a path, or the name of one of the user's own profiles.
 fn file_of(profile: &str) -> Option<PathBuf> {
     let path = Path::new(profile);
     let is_file = file::is_standard(path)

@@ -40,7 +40,7 @@ pub(crate) fn task() -> anyhow::Result<(Task, Bar)> {
     Ok((task, Bar { bar, clock }))
 }
 
-/// A task for that many runs side by side, which Ctrl-C cancels, and a bar that counts them.
+/// A task for this number of parallel runs, which Ctrl-C cancels, and a bar that counts them.
 pub(crate) fn counting(runs: usize) -> anyhow::Result<(Task, ProgressBar)> {
     let (task, bar) = (Task::new(), drawn(runs as u64));
     bar.set_style(ProgressStyle::with_template("{pos:>5} of {len} plans {wide_bar}")?);
@@ -48,7 +48,7 @@ pub(crate) fn counting(runs: usize) -> anyhow::Result<(Task, ProgressBar)> {
     Ok((task, bar))
 }
 
-/// A bar that is seen only on a terminal, and not with `--quiet`.
+/// A bar that is shown only on a terminal, and not with `--quiet`.
 fn drawn(length: u64) -> ProgressBar {
     let seen = std::io::stderr().is_terminal() && loudness() != Loudness::Quiet;
     if seen { ProgressBar::new(length) } else { ProgressBar::hidden() }
@@ -60,7 +60,7 @@ fn stopped_by_ctrl_c(task: &Task) -> anyhow::Result<()> {
 }
 
 impl Bar {
-    /// Takes the bar away, and with `--verbose` reports how long the stages took.
+    /// Removes the bar, and with `--verbose` reports how long the stages took.
     pub(crate) fn finish_and_clear(&self) {
         self.bar.finish_and_clear();
         if loudness() == Loudness::Verbose {
@@ -85,7 +85,7 @@ impl Clock {
         Self { begun, now: None, spent: Vec::new(), reported: None }
     }
 
-    /// Takes note of a step; once per stage, a sentence if it will take long.
+    /// Records a step; once per stage, returns a sentence if the stage will take long.
     fn step(&mut self, stage: Stage, fraction: f64, at: Instant) -> Option<String> {
         let since = match self.now {
             Some((current, since)) if current == stage => since,
@@ -131,7 +131,7 @@ impl Clock {
     }
 }
 
-/// Asked once, stops the task; asked again, ends at once. The next run clears what it leaves.
+/// The first call stops the task, the second ends the process at once. The next run clears what it leaves.
 fn stop() {
     static ASKED: AtomicBool = AtomicBool::new(false);
     if ASKED.swap(true, Ordering::Relaxed) {

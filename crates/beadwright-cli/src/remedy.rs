@@ -15,16 +15,16 @@ pub(crate) fn words(profile: &Profile) -> Words {
     profile.layers.by_lie(of_level, of_charted, of_bodies)
 }
 
-/// Bodies are already there: it matters where they are parted.
+/// The part is already divided into bodies: only dividing it elsewhere helps.
 fn of_bodies(kind: &str) -> Option<&'static str> {
     if lacks_metal_below(kind) {
-        Some("Other planes in the file of bodies part them elsewhere.")
+        Some("Other planes in the file of bodies divide the part elsewhere.")
     } else {
         of_level(kind)
     }
 }
 
-/// Layers that are not level begin where their chart does.
+/// Layers that are not level begin where their chart does, so cutting and turning the part do not help.
 fn of_charted(kind: &str) -> Option<&'static str> {
     if lacks_metal_below(kind) {
         Some("--bodies divides the part into bodies that each have metal below.")

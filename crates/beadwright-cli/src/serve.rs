@@ -60,7 +60,7 @@ fn answer(request: Request, folder: &Path, port: u16) -> std::io::Result<()> {
     match wanted(request.url()).and_then(|path| Some((kind(&path)?, read(folder, &path)?))) {
         Some((kind, bytes)) => {
             let mut response = Response::from_data(bytes);
-            // A page that was built again is shown anew.
+            // A page that was rebuilt must be loaded again.
             for (name, value) in
                 [("Content-Type", kind), ("Cache-Control", "no-cache"), ("X-Content-Type-Options", "nosniff")]
             {
@@ -72,7 +72,7 @@ fn answer(request: Request, folder: &Path, port: u16) -> std::io::Result<()> {
     }
 }
 
-/// Whether the browser has asked for this machine by its own name: another page may have given its name this address.
+/// Whether the request names this machine itself: a foreign page's name may have been made to point to this address.
 fn is_own(request: &Request, port: u16) -> bool {
     let host = request.headers().iter().find(|header| header.field.equiv("Host"));
     let own = ["127.0.0.1", "localhost"].map(|name| format!("{name}:{port}"));
@@ -85,7 +85,7 @@ fn read(folder: &Path, path: &Path) -> Option<Vec<u8>> {
     fs::read(file).ok()
 }
 
-/// The file that an address asks for, below the folder; nothing that leads out of it.
+/// The file that an address asks for, below the folder; `None` for anything outside it.
 fn wanted(address: &str) -> Option<PathBuf> {
     let path = address.split(['?', '#']).next()?.strip_prefix('/')?;
     // The page's files have plain names, so an encoded address asks for none of them.

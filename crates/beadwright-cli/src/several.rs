@@ -7,8 +7,8 @@ use std::path::Path;
 
 #[derive(clap::Args)]
 pub(crate) struct Several {
-    /// Another part for the same build, turned and scaled alike; may be given several times. The parts are placed in rows.
-    /// With --programs parts it may have its own profile: FILE:profile=NAME.
+    /// Another part for the same build, turned and scaled in the same way; may be given several times. The parts are
+    /// placed in rows. With --programs parts it may have its own profile: FILE:profile=NAME.
     #[arg(long, value_name = "MODEL")]
     pub(crate) with: Vec<String>,
     /// Distance between the parts of one build, mm.
@@ -50,7 +50,7 @@ fn parse_gap(text: &str) -> Result<f64, String> {
 }
 
 impl Several {
-    /// Refuses arguments that do not go together.
+    /// Refuses arguments that do not fit together.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
         anyhow::ensure!(
             self.programs == Programs::One || self.order == Order::Parts,
@@ -67,7 +67,7 @@ impl Several {
         if self.as_placed { Arrangement::AsTheyAre } else { Arrangement::Rows { gap: self.gap } }
     }
 
-    /// Where the first model and the others are placed; `place` reads and places one of them.
+    /// Positions of the first model and the others; `place` reads and places one of them.
     pub(crate) fn stand(
         &self,
         first: &model::Model,
@@ -103,7 +103,7 @@ pub(crate) struct Build {
     pub(crate) base: Option<Mesh>,
     /// Where each of several parts is placed.
     pub(crate) places: Vec<Place>,
-    /// Each of several parts by its name and by itself, the lowest first.
+    /// Each of several parts with its name, on its own, the lowest first.
     pub(crate) lowest_first: Vec<(String, Import)>,
 }
 

@@ -1,4 +1,4 @@
-//! `beadwright simulate`: what a plan or anyone's program would build.
+//! `beadwright simulate`: what a plan, or a program from any source, would build.
 
 use crate::plan::parse_grid;
 use crate::{model, profile, program, progress};
@@ -16,8 +16,8 @@ pub(crate) struct Arguments {
     /// plan.json, toolpaths in 3MF, or a program in G-code (also a printer's), KRL, RAPID, FANUC TP, INFORM or
     /// URScript; if it has several files, the main one.
     file: PathBuf,
-    /// Part that the program was made for, as STL; without it a program has no outline, and no voids or overfill are
-    /// reported.
+    /// Model of the part that the program was made for, as for `plan`; without it a program has no outline, and no
+    /// voids or overfill are reported.
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
     /// Unit of the part's coordinates.
@@ -95,7 +95,7 @@ fn print(out: &mut impl Write, loaded: &beadwright::read_back::ReadBack, entry: 
     loaded.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))
 }
 
-/// The worst places, and how the stack grows.
+/// The worst places, and how the part grows from layer to layer.
 fn print_patches(out: &mut impl Write, entry: &Entry) -> std::io::Result<()> {
     const LISTED: usize = 5;
     let place =

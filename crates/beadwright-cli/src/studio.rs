@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     args: Vec<OsString>,
 }
 
-/// Runs it to its end and returns its exit status.
+/// Runs it until it ends, and returns its exit status.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     if let Some(port) = arguments.serve {
         serve::run(port, arguments.pages.as_deref())?;

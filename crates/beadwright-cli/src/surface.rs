@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
-    /// Direction in which the layers are stacked; the surface is what is seen against it.
+    /// Direction in which the layers are stacked; the surface is what is seen looking against it.
     #[arg(long, value_name = "X/Y/Z", default_value = "z", allow_hyphen_values = true)]
     up: String,
     /// Spacing of the grid on which heights are sampled, mm; finer detail is smoothed out.
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 /// The greatest stretch between heights, and where.
 fn steepest(surface: &Surface) -> (f64, DVec2) {
     let rows = surface.heights().len() / surface.columns();
-    // Without the margin, where the surface goes on level.
+    // Without the margin, where the surface continues level.
     let cells =
         (1..rows - 2).flat_map(|j| (1..surface.columns() - 2).map(move |i| DVec2::new(i as f64 + 0.5, j as f64 + 0.5)));
     let at = |cell: DVec2| surface.from() + cell * surface.step();

@@ -1,4 +1,4 @@
-"""Looks for the layer height and overlap that build a part soonest with little void, by Optuna: ``python optimise.py``."""
+"""Searches for the layer height and overlap that build a part fastest with little void, with Optuna: ``python optimise.py``."""
 
 import optuna
 
@@ -6,7 +6,7 @@ import beadwright
 
 PART = beadwright.Part.example("cross")
 BASE = beadwright.Profile("cmt-al2319-kuka").set(fill__overlap="free", fill__stepover=5.4)
-#: The most void that is taken, %.
+#: The most void that is accepted, %.
 MOST_VOID = 1.0
 
 
@@ -21,7 +21,7 @@ def measured(trial: optuna.Trial) -> tuple[float, float]:
     try:
         plan = beadwright.plan(PART, profile)
     except beadwright.BeadwrightError as error:
-        # What cannot be built is no worse than any other trial that fails.
+        # A part that cannot be built is just a failed trial.
         raise optuna.TrialPruned(str(error)) from error
     return plan.metrics.total_time_s / 60, beadwright.simulate(plan).row["void %"]
 

@@ -4,7 +4,7 @@ import beadwright
 
 
 def main() -> None:
-    """Twelve plans; started again, none."""
+    """Makes twelve plans; a second run makes none."""
     done = beadwright.study(
         [beadwright.Part.example("cross"), beadwright.Part.example("star")],
         {"fill.strategy": ["contour", "zigzag", "loop"], "layers.height": [1.8, 2.0]},

@@ -62,9 +62,13 @@ pub(crate) fn words(profile: &Profile) -> Words {
     profile.layers.by_lie(of_level, of_charted, of_bodies)
 }
 
-/// Bodies are already there: it matters where they are parted.
+/// The part is already divided into bodies: only dividing it elsewhere helps.
 fn of_bodies(kind: &str) -> Option<&'static str> {
-    if lacks_metal_below(kind) { Some("Other planes in layers.bodies part them elsewhere.") } else { of_level(kind) }
+    if lacks_metal_below(kind) {
+        Some("Other planes in layers.bodies divide the part elsewhere.")
+    } else {
+        of_level(kind)
+    }
 }
 
 /// Layers that are not level begin where their chart does.

@@ -29,7 +29,7 @@ pub(crate) fn heat<'py>(
     let planned = &plan.0;
     let (name, profile) = (&planned.header.part, &planned.profile);
     let usual = Interpass { max_temperature: 0.0, min_temperature: None, reorder: true, along: false };
-    // Without a limit, the plan has the waits of its own limit.
+    // Without a limit, the plan keeps the waits for its own limit.
     let interpass = limit.map(|max_temperature| Interpass { max_temperature, ..profile.interpass.unwrap_or(usual) });
     let least = profile.heat.as_ref().map_or(30.0, |heat| heat.ambient + 10.0);
     if let Some(limit) = limit.filter(|limit| !(least..=1500.0).contains(limit)) {

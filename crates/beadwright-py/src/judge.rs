@@ -37,7 +37,8 @@ impl Judged {
         &self.entry.name
     }
 
-    /// Arc starts, lengths, times and metal; the figures; those of each layer with its voids and peaks; how the stack grows.
+    /// Arc starts, lengths, times and metal; the figures; the figures of each layer with its voids and peaks; how the
+    /// part grows from layer to layer.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let Entry { totals, figures, layers, growth, built, .. } = &self.entry;

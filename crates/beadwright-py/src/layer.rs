@@ -1,4 +1,4 @@
-//! Layers and their passes. All of them look into one list of layers that nobody changes.
+//! Layers and their passes. All of them are views of one list of layers that never changes.
 
 use crate::array::{Array, Item, Numbers};
 use beadwright::planar::Ring;

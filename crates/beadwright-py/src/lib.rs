@@ -8,9 +8,9 @@
 //! | `part`, `profile` | what is planned, and how |
 //! | `plan`, `planned`, `layer` | the plan, what it holds, its layers and passes |
 //! | `save` | the files of a plan, byte for byte those of the command |
-//! | `program` | anyone's program, read back as layers |
+//! | `program` | programs from any source, read back as layers |
 //! | `judge` | what layers would build: height fields, comparisons |
-//! | `heat`, `reach` | how warm the metal becomes, and whether a robot gets there |
+//! | `heat`, `reach` | how warm the metal becomes, and whether a robot can weld it |
 //! | `bead_library` | measured beads |
 //!
 //! Files are read by the Python around it (`python/beadwright`), which is also what users see; no name here is meant for them.

@@ -39,7 +39,7 @@ pub(crate) struct Part {
     pub(crate) part: Arc<model::Part>,
     /// Size in the file's units, where these are a guess.
     guessed: Option<DVec3>,
-    /// Of a preform, what it weighs, takes and costs.
+    /// Mass, time and cost of a preform; `None` for a part as it is drawn.
     figures: Option<Figures>,
 }
 
@@ -174,13 +174,13 @@ impl Part {
         Ok(Self { name: self.name.clone(), part: Arc::new(part), guessed: None, figures: Some(figures) })
     }
 
-    /// What a preform weighs, takes and costs; none of a part as it is drawn.
+    /// Mass, time and cost of a preform; `None` for a part as it is drawn.
     #[getter]
     fn figures<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         Ok(self.figures.as_ref().map(|figures| pythonize::pythonize(py, figures)).transpose()?)
     }
 
-    /// The faces of the part that is milled from a preform, with the metal over them; none of a part as it is drawn.
+    /// The faces of the part that is milled from a preform, with the metal over them; empty for a part as it is drawn.
     #[getter]
     fn milled_faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let faces = self.part.milled().map(|milled| faces::faces(&milled.mesh, &milled.stock)).unwrap_or_default();

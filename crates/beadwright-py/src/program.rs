@@ -1,4 +1,4 @@
-//! Anyone's program, read back as layers and judged, as the command does.
+//! A program from any source, read back as layers and judged, as the command does.
 
 use crate::error::raise;
 use crate::judge::Judged;

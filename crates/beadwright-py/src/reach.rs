@@ -28,8 +28,8 @@ pub(crate) fn cell_text(name: &str) -> PyResult<&'static str> {
     Cell::built_in_text(name).refuse(None)
 }
 
-/// Walks a plan in a cell, whose text is TOML; `urdf` is the text of the arm's file, if the cell names one. `at` is the place
-/// of the part: x, y, z (mm) and the turn about the vertical (°).
+/// Follows a plan with the robot of a cell, whose text is TOML; `urdf` is the text of the arm's file, if the cell names
+/// one. `at` is the position of the part: x, y, z (mm) and the turn about the vertical (°).
 #[pyfunction]
 #[pyo3(signature = (plan, cell, place, urdf, at, suggest))]
 pub(crate) fn reach(
@@ -78,7 +78,7 @@ impl Reach {
         Ok(pythonize::pythonize(py, &self.values)?)
     }
 
-    /// Time of each point, s, and angles of the six joints, °; none where a point is out of reach.
+    /// Time of each point, s, and angles of the six joints, °; `None` if a point is out of reach.
     #[getter]
     fn trajectory(&self) -> Option<(Array, Array)> {
         let points = &self.trajectory.as_ref()?.points;

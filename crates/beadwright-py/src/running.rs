@@ -34,7 +34,7 @@ impl<'py> Running<'py> {
         Self { threads, progress }
     }
 
-    /// Does the work and returns what it gives.
+    /// Does the work and returns its result.
     pub(crate) fn run<T: Send, E: Error + Send + 'static>(
         self,
         py: Python<'py>,

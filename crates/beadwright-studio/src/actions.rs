@@ -59,7 +59,7 @@ pub enum Action {
     Quit,
     /// Asks for a file.
     Ask(Ask),
-    /// Continues with a path that was typed; without one, asks no more.
+    /// Continues with a path that was typed; without one, gives up asking.
     Answer(Option<PathBuf>),
     /// Writes something into the folder named in the panel, or asks for one.
     Export(Export),

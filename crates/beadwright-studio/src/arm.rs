@@ -8,7 +8,7 @@ use beadwright::program::Held;
 use beadwright::robot::body::{Capsule, capsules};
 use beadwright::robot::{Cell, Joints, Reach, Stop};
 
-/// An arm at a place.
+/// The pose of the arm with the torch at a place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stand {
     /// Angles of the joints, °.
@@ -19,8 +19,8 @@ pub struct Stand {
     pub links: Vec<Capsule>,
 }
 
-/// The pose of the arm with the torch at a place, in the posture that the walk along the program has chosen; none where the
-/// arm cannot get there.
+/// The pose of the arm with the torch at a place, in the posture that the program uses there; `None` where the arm
+/// cannot get there.
 pub fn stand(cell: &Cell, reach: &Reach, place: &Place) -> Option<Stand> {
     let key = (place.layer, place.pass);
     let first = reach.poses.partition_point(|(stop, _)| (stop.layer, stop.pass) < key);
@@ -35,7 +35,7 @@ pub fn stand(cell: &Cell, reach: &Reach, place: &Place) -> Option<Stand> {
     let flange = base_from_part.then(&tool).then(&cell.flange_from_tool().inverse());
     let ways = arm.inverse(&flange);
     let (_, joints) = ways.into_iter().find(|(branch, _)| *branch == reach.branch)?;
-    // Joints that turn further than once are where the program has them.
+    // Joints that can turn more than once are put at the angle that the program has for them.
     let joints: Joints = std::array::from_fn(|i| joints[i] + 360.0 * ((pose.joints[i] - joints[i]) / 360.0).round());
     let part_from_base = stop.turned_table().inverse().then(&base_from_part.inverse());
     let links = cell.body.as_ref().map(|body| {
@@ -46,7 +46,7 @@ pub fn stand(cell: &Cell, reach: &Reach, place: &Place) -> Option<Stand> {
 }
 
 impl LayerBeads {
-    /// The torch at a fraction (0 to 1) of the length of a segment of this layer, which is the one with that index.
+    /// The torch at a fraction `part` (0 to 1) of the length of a segment of this layer; `segment` is its index.
     fn place(&self, layer: usize, segment: usize, part: f64) -> Option<Place> {
         let (pass, torch) = (self.pass_of(segment), self.beads().get(segment)?.torch(part));
         Some(Place { layer, pass, come: Come::Along(self.laid(pass, segment, torch.at)), torch })
@@ -54,7 +54,7 @@ impl LayerBeads {
 }
 
 impl Known<'_> {
-    /// Where the torch is: as it plays, at the chosen bead, or at the end of what is shown.
+    /// Where the torch is: as it plays, at the chosen bead, or at the end of the beads shown.
     pub(crate) fn torch_place(self, view: &ViewState) -> Option<Place> {
         let scene = &self.plans.own.scene;
         if view.torch.is_some() {
@@ -75,13 +75,13 @@ impl Known<'_> {
         beads.place(layer, shown.max(1) - 1, 1.0)
     }
 
-    /// How the part is held there; none where nothing turns it, or the robot is not shown.
+    /// How the part is held there; `None` where nothing turns it, or the robot is not shown.
     pub(crate) fn held(self, view: &ViewState) -> Option<Held> {
         let reach = self.jobs.reach.as_ref().filter(|_| view.robot)?;
         holding::held(&reach.poses, &self.torch_place(view)?)
     }
 
-    /// The pose of the arm there; none where it is not shown, not yet computed, or cannot get there.
+    /// The pose of the arm there; `None` where it is not shown, not yet computed, or cannot get there.
     pub(crate) fn arm(self, view: &ViewState) -> Option<Stand> {
         let (cell, reach) = (self.jobs.cell.as_ref()?, self.jobs.reach.as_ref()?);
         stand(cell, reach, &self.torch_place(view)?).filter(|_| view.robot)

@@ -21,7 +21,7 @@ pub struct Compared {
     pub deviation: Deviation,
 }
 
-/// Reads a file, or takes what was read.
+/// Reads a scan from its file, or returns one that is already read.
 pub(crate) type Source = Box<dyn FnOnce() -> Result<Arc<Scan>, String> + Send>;
 
 /// Compares a scan with a part.

@@ -14,7 +14,8 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(version)]
 struct Arguments {
-    /// Model (STL, IGES) or project (.bwp) to open, or the name of an example part, such as propeller.
+    /// Model (STL, 3MF, AMF, OBJ, PLY, IGES, SVG, DXF) or project (.bwp) to open, or the name of an example part, such
+    /// as propeller.
     file: Option<PathBuf>,
     /// View to start with.
     #[arg(long, value_name = "VIEW")]

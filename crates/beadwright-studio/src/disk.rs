@@ -1,4 +1,4 @@
-//! Files by their paths: those of the disk; in a browser those that the user has handed to the page, and downloads.
+//! Files by their paths: on the disk, or in a browser, those that the user has handed to the page, and downloads.
 
 #[cfg(target_arch = "wasm32")]
 #[path = "disk/browser.rs"]

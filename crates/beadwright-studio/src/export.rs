@@ -51,7 +51,7 @@ impl Export {
     }
 }
 
-/// Refuses programs that nobody should start.
+/// Refuses programs that should not be started.
 fn allowed(summary: &Summary) -> Result<(), String> {
     match summary.forbidden.first() {
         Some(reason) => Err(format!(

@@ -192,7 +192,7 @@ pub struct Parsed {
 }
 
 impl Parsed {
-    /// Reads the text of a profile; none where it cannot be read.
+    /// Reads the text of a profile; `None` if it cannot be read.
     pub fn of(text: &str) -> Option<Self> {
         let profile = Profile::parse(text).ok()?;
         let (values, limits) = (toml::Table::try_from(&profile).ok()?, profile.limits());
@@ -200,7 +200,7 @@ impl Parsed {
     }
 }
 
-/// The value of a key, defaults included; none where it is left out.
+/// The value of a key, defaults included; `None` if it is left out.
 pub fn value(profile: &toml::Table, key: &str) -> Option<toml::Value> {
     let mut parts = key.split('.');
     let first = profile.get(parts.next()?)?;

@@ -10,7 +10,7 @@ pub struct History<T> {
     open: Option<String>,
 }
 
-/// Most steps that are kept.
+/// Maximum number of steps that are kept.
 const STEPS: usize = 200;
 
 impl<T: Clone + PartialEq> History<T> {

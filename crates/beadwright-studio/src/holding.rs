@@ -6,19 +6,19 @@ use beadwright::robot::{Pose, Stop};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
-/// How much a millimetre along the pass counts as one beside it: it tells the end of a ring from its start.
+/// How much a millimetre along the pass counts compared with one sideways: it tells the end of a ring from its start.
 const ALONG: f64 = 0.1;
 
 /// How far the torch has come.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Come {
-    /// A part of the way to the pass, 0 to 1.
+    /// A fraction of the way to the pass, 0 to 1.
     Towards(f64),
     /// Along the pass, mm.
     Along(f64),
 }
 
-/// A place of the torch: the pass that it lays or comes to.
+/// A place of the torch on a pass, or on the way to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// The layer, from 0.
@@ -34,7 +34,7 @@ pub struct Place {
 /// The stops of a track, with the poses of the arm there.
 type Poses = [(Stop, Option<Pose>)];
 
-/// How the part is held with the torch at a place; none where nothing turns it.
+/// How the part is held with the torch at a place; `None` where nothing turns it.
 pub fn held(poses: &Poses, place: &Place) -> Option<Held> {
     attitude(poses, place)?.held
 }
@@ -42,7 +42,7 @@ pub fn held(poses: &Poses, place: &Place) -> Option<Held> {
 /// The attitude of torch and part with the torch at a place.
 pub fn attitude(poses: &Poses, place: &Place) -> Option<Attitude> {
     let Some(welds) = welds(poses, (place.layer, place.pass)) else {
-        // Nothing is laid: as after the pass before.
+        // Nothing is laid: the attitude is that after the pass before.
         let key = |stop: &Stop| (stop.layer, stop.pass);
         let before = poses.partition_point(|(stop, _)| key(stop) <= (place.layer, place.pass));
         return Some(poses.get(before.saturating_sub(1))?.0.attitude);
@@ -53,7 +53,7 @@ pub fn attitude(poses: &Poses, place: &Place) -> Option<Attitude> {
     }
 }
 
-/// The stops of a pass to which it is laid.
+/// The stops at the ends of the welding moves of a pass.
 fn welds(poses: &Poses, key: (usize, usize)) -> Option<RangeInclusive<usize>> {
     let begin = poses.partition_point(|(stop, _)| (stop.layer, stop.pass) < key);
     let end = poses.partition_point(|(stop, _)| (stop.layer, stop.pass) <= key);
@@ -61,7 +61,7 @@ fn welds(poses: &Poses, key: (usize, usize)) -> Option<RangeInclusive<usize>> {
     Some((begin..end).find(arc)?..=(begin..end).rfind(arc)?)
 }
 
-/// The attitude at a part of the way from the weld before to the pass whose first weld goes to stop `first`.
+/// The attitude at a fraction `part` of the way from the weld before to the pass whose first weld goes to stop `first`.
 fn on_way(poses: &Poses, first: usize, part: f64) -> Option<Attitude> {
     let start = poses[..first].iter().rposition(|(stop, _)| stop.arc).unwrap_or(0);
     let way = &poses[start..first];
@@ -77,7 +77,7 @@ fn on_way(poses: &Poses, first: usize, part: f64) -> Option<Attitude> {
     Some(way.last()?.0.attitude)
 }
 
-/// The attitude at the place of a pass that is nearest to a point, where about `laid` mm of the pass lie behind it.
+/// The attitude at the place of a pass nearest to a point, given that about `laid` mm of the pass are laid.
 fn along(pass: &Poses, at: DVec3, laid: f64) -> Option<Attitude> {
     let mut before = 0.0;
     let near = pass.windows(2).map(|leg| {

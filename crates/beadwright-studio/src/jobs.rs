@@ -1,5 +1,5 @@
 //! Small background jobs: each gives one answer, to be fetched when it is ready. On the desktop they have threads; in a
-//! browser, where only planning has a worker, they hold up the page for as long as they take.
+//! browser, where only planning has a worker, they block the page until they are done.
 
 #[cfg(target_arch = "wasm32")]
 #[path = "jobs/browser.rs"]
@@ -81,17 +81,17 @@ pub enum Ask {
     OpenScan,
 }
 
-/// What a dialog gave: the path, if there is one, and whether the dialog can have been on the screen at all.
+/// What a dialog returned: the path, if there is one, and whether the dialog can have been on the screen at all.
 pub struct Answer {
     /// What was asked for.
     pub what: Ask,
-    /// The path; none if the user cancelled.
+    /// The path; `None` if the user cancelled.
     pub path: Option<PathBuf>,
-    /// Whether somebody can have seen it: a desktop without file dialogs answers at once.
+    /// Whether somebody can have seen the dialog: a desktop without file dialogs answers at once.
     pub seen: bool,
 }
 
-/// Checks with a robot cell whether a plan can be reached.
+/// Checks whether a robot cell can reach all of a plan.
 pub fn reach(
     ctx: &Context,
     cell: String,

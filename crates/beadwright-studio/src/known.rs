@@ -1,4 +1,5 @@
-//! What is known: window, project, plans, background work. Panels can read it, change the view, and put all else into a queue.
+//! What is known: window, project, plans, background work. Panels can read it, change the view, and queue all other
+//! requests.
 
 use crate::actions::Action;
 use crate::compared::Compared;
@@ -46,7 +47,7 @@ pub(crate) struct Window {
     pub(crate) render_state: Option<RenderState>,
     pub(crate) store: Store,
     pub(crate) settings: Settings,
-    /// Pictures of the examples, in their order, as far as they are drawn.
+    /// Pictures of the examples drawn so far, in their order.
     pub(crate) pictures: Vec<egui::TextureHandle>,
     /// Sentences on what went wrong or was done, newest last.
     pub(crate) messages: Vec<Message>,
@@ -69,7 +70,7 @@ pub(crate) struct Open {
     pub(crate) opened: usize,
     /// The project of a run that crashed.
     pub(crate) lost: Option<Project>,
-    /// The profile as the form needs it, parsed from the text last read.
+    /// The profile as the form needs it, from the text that was parsed last.
     pub(crate) parsed: Option<Rc<Parsed>>,
     /// A key whose value was refused, and why.
     pub(crate) refused: Option<(String, String)>,
@@ -86,7 +87,7 @@ pub(crate) struct Plans {
 #[derive(Default)]
 pub(crate) struct Jobs {
     pub(crate) dialog: Option<Job<Answer>>,
-    /// What a path is typed for, where there is no dialog.
+    /// What the path being typed is for, where there is no dialog.
     pub(crate) typed: Option<Ask>,
     /// What to write into the folder that is being asked for.
     pub(crate) exporting: Export,
@@ -96,7 +97,7 @@ pub(crate) struct Jobs {
     pub(crate) level_job: Option<Job<Leans>>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
-    /// The cell that this is about.
+    /// The cell that the results are for.
     pub(crate) cell: Option<Cell>,
     /// A scan to be opened.
     pub(crate) scan_wanted: Option<PathBuf>,

@@ -12,10 +12,10 @@ use std::sync::Arc;
 /// For each layer, how far it leans in the middle of each of its segments, °.
 pub type Leans = Vec<Arc<[f32]>>;
 
-/// The layers as they are drawn, as far as they are there.
+/// The layers as they are drawn; `None` for those not there yet.
 pub type Drawn = [Option<Arc<LayerBeads>>];
 
-/// Computes how far the layers lean as the part is held by its positioner.
+/// Computes how far the layers lean while the positioner holds the part.
 pub fn level(
     ctx: &Context,
     layers: Vec<Arc<Layer>>,

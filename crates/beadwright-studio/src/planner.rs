@@ -53,7 +53,7 @@ pub enum Event {
     Planned(Box<Summary>),
     /// What the deposit model says about a layer, and the height error at every piece, in nominal bead heights.
     Judged(usize, Arc<Judgement>, Arc<[f32]>),
-    /// What it says of all layers together, and what the checks found.
+    /// Its figures for all layers together, and what the checks found.
     Checked(Figures, Vec<Finding>),
     /// Planning failed; nothing more comes.
     Failed(Failure),
@@ -101,7 +101,7 @@ impl Event {
     }
 }
 
-/// Plans in the background; keeps what only the last order is about.
+/// Plans in the background; keeps only the events of the last order.
 pub struct Planner {
     hand: Hand,
     number: u64,

@@ -3,7 +3,7 @@
 use crate::studio::Studio;
 use beadwright::dialect;
 
-/// For each language of robots, a built-in cell whose robot speaks it; the two that built-in profiles name among them.
+/// For each robot language, a built-in cell whose robot speaks it, among them the two that built-in profiles name.
 const SPEAKERS: [(&str, &str); 5] = [
     ("krl", "kuka-kr20-r1810"),
     ("rapid", "abb-irb1410"),
@@ -26,7 +26,7 @@ impl Studio {
         self.view.dialect = post;
     }
 
-    /// Uses another robot cell; what was computed for the former is forgotten.
+    /// Uses another robot cell; results for the previous one are discarded.
     pub(crate) fn take_cell(&mut self, name: &str) {
         if self.view.cell != name {
             name.clone_into(&mut self.view.cell);

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl Studio {
-    /// Compares a scan with the part, as soon as that is placed.
+    /// Compares a scan with the part, as soon as the part is placed.
     pub fn open_scan(&mut self, path: &Path) {
         self.jobs.scan_wanted = Some(path.to_owned());
         self.view.scan = true;
@@ -24,12 +24,12 @@ impl Studio {
         self.plans.own.show_stock();
     }
 
-    /// The scan, as far as it was compared with the part in view.
+    /// The scan, if it has been compared with the part in view.
     pub fn scan(&self) -> Option<&Compared> {
         self.known().scan()
     }
 
-    /// The part that a scan can be compared with, and what is left of it to be milled off, mm.
+    /// The part that a scan can be compared with, and its machining allowance, mm.
     fn scannable(&self) -> Option<(Arc<Part>, f64)> {
         let own = &self.plans.own;
         let part = own.part.clone().filter(|part| part.mesh().is_some())?;
@@ -74,7 +74,7 @@ impl Studio {
 }
 
 impl<'a> Known<'a> {
-    /// The scan, as far as it was compared with the part in view.
+    /// The scan, if it has been compared with the part in view.
     pub(crate) fn scan(self) -> Option<&'a Compared> {
         let own = &self.plans.own;
         let (part, _) = (own.part.as_ref()?, own.scene.scan()?);

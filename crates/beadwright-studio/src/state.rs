@@ -1,4 +1,4 @@
-//! What is known of a plan so far, put together from the planner's events.
+//! What is known of a plan, put together from the planner's events.
 
 use crate::planner::{Event, Failure};
 use crate::view3d::{Scanned, Scene};
@@ -11,18 +11,18 @@ use beadwright::profile::Profile;
 use beadwright::task::Stage;
 use std::sync::Arc;
 
-/// A plan, as far as it has come.
+/// A plan as far as it is made.
 #[derive(Default)]
 pub struct PlanState {
     /// The placed model.
     pub part: Option<Arc<Part>>,
     /// The profile of this plan.
     pub profile: Option<Arc<Profile>>,
-    /// What all layers have in common; there once the layers begin to arrive.
+    /// What all layers have in common, once the layers begin to arrive.
     pub header: Option<Header>,
     /// The layers planned so far.
     pub layers: Vec<Arc<Layer>>,
-    /// The layer in view, planned first, until the other layers have come that far.
+    /// The layer in view, planned first, until the other layers have got that far.
     pub preview: Option<Arc<Layer>>,
     /// What the deposit model says about each layer.
     pub judgements: Vec<Arc<Judgement>>,
@@ -38,11 +38,11 @@ pub struct PlanState {
     pub failure: Option<Failure>,
     /// What the 3-D view shows.
     pub scene: Scene,
-    /// How much of what is in view is already from the last request.
+    /// How much of what is in view already comes from the last request.
     received: Received,
 }
 
-/// How much of a request is in view already; the rest is still from the previous request.
+/// How much of what is in view comes from the present request; the rest is still from the previous one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Received {
     #[default]
@@ -60,7 +60,8 @@ impl PlanState {
         self.received = Received::Nothing;
     }
 
-    /// Whether layers, profile and totals in view belong together and to the last request: only then may they be written.
+    /// Whether layers, profile and totals in view belong together and to the last request: only then may they be
+    /// written to files.
     pub fn is_of_last_request(&self) -> bool {
         self.received == Received::Layers
     }
@@ -125,7 +126,7 @@ impl PlanState {
         self.scene.set_scan(milled.and_then(Scanned::stock));
     }
 
-    /// Clears what the failed request has not replaced, which would otherwise pass for its result.
+    /// Clears what the failed request has not replaced and would otherwise be taken for its result.
     fn clear_failed(&mut self) {
         if self.received == Received::Nothing {
             (self.part, self.profile) = (None, None);
@@ -152,7 +153,7 @@ impl PlanState {
         self.findings = None;
     }
 
-    /// Number of layers, as far as known.
+    /// Number of layers known so far.
     pub fn layer_count(&self) -> usize {
         let preview = self.preview.as_ref().map_or(0, |layer| layer.index + 1);
         self.header.as_ref().map_or(preview, |header| header.extent.layers).max(self.layers.len())

@@ -1,4 +1,5 @@
-//! How a strategy comes to the passes of a layer: pockets and skeleton regions of the hybrid, rings and flips of the loop.
+//! How a strategy arrives at the passes of a layer: pockets and skeleton regions of the hybrid, rings and flips of the
+//! loop.
 
 use crate::jobs::{self, Job};
 use beadwright::fill::{StrategyName, hybrid, one_loop};
@@ -12,7 +13,7 @@ use std::sync::Arc;
 pub enum Steps {
     /// Pockets and skeleton regions.
     Hybrid(hybrid::Steps),
-    /// Rings and flips, moved by the middle of the island, mm.
+    /// Rings and flips relative to the middle of the island, and that middle, mm.
     Loop(Box<one_loop::Steps>, DVec2),
 }
 
@@ -39,7 +40,7 @@ pub struct Looked {
 }
 
 impl Looked {
-    /// Forgets them, and does not wait for those under way.
+    /// Forgets them, including those under way.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
@@ -49,12 +50,12 @@ impl Looked {
         self.job.is_some()
     }
 
-    /// Whether those of a layer are there or under way.
+    /// Whether the steps of a layer are there or under way.
     pub fn knows(&self, layer: usize) -> bool {
         self.is_busy() || self.known.as_ref().is_some_and(|(of, _)| *of == layer)
     }
 
-    /// Begins with a layer, in the background; nothing happens before the plan has come as far.
+    /// Begins with a layer, in the background; does nothing if the plan has not got that far.
     pub fn begin(&mut self, ctx: &Context, layer: Option<&Arc<Layer>>, profile: Option<&Arc<Profile>>) {
         let (Some(layer), Some(profile)) = (layer.cloned(), profile.cloned()) else { return };
         if !self.knows(layer.index) {
@@ -74,7 +75,7 @@ impl Looked {
         Ok(())
     }
 
-    /// Those of a layer; none before they are there.
+    /// The steps of a layer; empty before they are there.
     pub fn of(&self, layer: usize) -> &[Steps] {
         self.known.as_ref().filter(|(of, _)| *of == layer).map_or(&[], |(_, steps)| steps)
     }

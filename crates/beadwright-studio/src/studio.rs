@@ -23,7 +23,7 @@ use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
 
-/// The program. Panels can change only the view; everything else they ask for by a queue.
+/// The program. Panels can change only the view; everything else they request through a queue.
 pub struct Studio {
     pub(crate) window: Window,
     pub(crate) open: Open,
@@ -92,7 +92,7 @@ impl Studio {
         self.open.lost = self.window.store.lost_project();
     }
 
-    /// Discards that project; what is open now is autosaved in its place.
+    /// Discards that project; the open one is autosaved in its place.
     pub(crate) fn forget_lost(&mut self) {
         self.window.store.forget_project();
         self.open.kept = Project::default();
@@ -121,7 +121,7 @@ impl Studio {
         }
     }
 
-    /// The plan, as far as it has come.
+    /// The plan as far as it is made.
     pub fn plan(&self) -> &PlanState {
         &self.plans.own
     }
@@ -136,7 +136,7 @@ impl Studio {
         &mut self.view
     }
 
-    /// From where the 3-D view is seen.
+    /// The camera of the 3-D view.
     pub fn camera(&self) -> Camera {
         self.solid.camera
     }

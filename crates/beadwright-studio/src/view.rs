@@ -96,7 +96,7 @@ pub struct ViewState {
     pub keys: bool,
     /// The layer wanted as the highest one; the top layer if none is wanted, or while there are fewer layers.
     wanted: Option<usize>,
-    /// The layer wanted before the layer view went to that of the chosen bead, and the latter.
+    /// The layer wanted before the view switched to the layer of the chosen bead, and that layer.
     left: Option<(Option<usize>, usize)>,
 }
 
@@ -169,7 +169,8 @@ impl ViewState {
         self.playing = false;
     }
 
-    /// Switches to a view. Those of one layer show that of the chosen bead; back in 3-D, as many layers as before are seen.
+    /// Switches to a view. Views of one layer show that of the chosen bead; back in 3-D, the layers are shown as
+    /// before.
     pub fn switch(&mut self, mode: Mode) {
         if mode == self.mode {
             return;

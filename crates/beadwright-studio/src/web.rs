@@ -111,7 +111,7 @@ impl Page {
             }
             self.said = sentence;
         }
-        // The page asks before it is left with changes that are not saved.
+        // The page asks before it is left with unsaved changes.
         if let Some(body) = &self.body {
             let _ = body.toggle_attribute_with_force("data-changed", self.studio.is_changed());
         }

@@ -1,8 +1,9 @@
 //! The shape that the beads of a plan have in space, compared with the part.
 //!
-//! A bead takes up its width on its layer, from the layer's underside to its top: what the deposit model says of valleys and humps
-//! is in the figures of each layer. So this shows whether beads lie where the part is, whichever way its layers lie: steps,
-//! missing and surplus metal, layers of one body beside those of another. What of the part belongs to no body is there already.
+//! A bead takes up its width on its layer, from the layer's underside to its top; the valleys and humps that the
+//! deposit model predicts are in the figures of each layer. So this shows whether beads lie where the part is, however
+//! its layers run: steps, missing and surplus metal, layers of one body next to those of another. What belongs to no
+//! body of the part counts as already there.
 
 use crate::chart::{Chart, Sheet};
 use crate::deviation::{Deviation, DeviationError, deviation};
@@ -20,13 +21,13 @@ use rayon::prelude::*;
 use rstar::{AABB, Envelope, RTree, RTreeObject};
 use serde::Serialize;
 
-/// The box around part and metal is divided into about this many voxels at most,
+/// The box around part and metal is divided into at most about this many voxels,
 const VOXELS: f64 = 4e6;
-/// whose edges are no shorter than this part of a layer's height.
+/// whose edges are no shorter than this fraction of a layer's height.
 const FINEST: f64 = 0.5;
-/// Where in the corner of the box the first middle lies, as a part of a voxel's edge.
+/// Where the middle of the first voxel lies in the corner of the box, as a fraction of a voxel's edge.
 const OFF: f64 = 0.381_966;
-/// The surface of the metal is found this accurately, as a part of a voxel's edge.
+/// Accuracy to which the surface of the metal is found, as a fraction of a voxel's edge.
 const SURFACE: f64 = 1.0 / 64.0;
 
 /// What a plan builds, compared with the part that it was made for.
@@ -34,13 +35,13 @@ const SURFACE: f64 = 1.0 / 64.0;
 pub struct AsBuilt {
     /// Edge of the voxels that are counted, mm.
     pub step: f64,
-    /// Volume of what is to be welded of the part, mm³.
+    /// Volume of the part that is to be welded, mm³.
     pub part: f64,
-    /// Volume that beads take up, mm³: where they overlap or rise above their layer, less than the metal that is laid.
+    /// Volume that beads take up, mm³; less than the metal laid where they overlap or rise above their layer.
     pub metal: f64,
     /// Volume of the metal that is laid, mm³.
     pub laid: f64,
-    /// Volume that both have in common, mm³.
+    /// Volume shared by the part and the beads, mm³.
     pub common: f64,
     /// How far the metal's surface lies from that of the part.
     #[serde(skip)]
@@ -48,13 +49,13 @@ pub struct AsBuilt {
 }
 
 impl AsBuilt {
-    /// The volume in common as a fraction of both together, 0 to 1.
+    /// The shared volume as a fraction of the union of part and beads, 0 to 1.
     pub fn agreement(&self) -> f64 {
         self.common / (self.part + self.metal - self.common)
     }
 }
 
-/// Compares the beads of a plan with its part, which lies as it was planned; `profile` is that of the plan.
+/// Compares the beads of a plan with its part, placed as it was planned; `profile` is the one that it was planned with.
 ///
 /// ```
 /// use beadwright::{Model, Placement, Profile, Task, as_built::as_built, example, plan};
@@ -70,7 +71,7 @@ impl AsBuilt {
 /// ```
 ///
 /// # Errors
-/// [`DeviationError`]; no points where a plan has no bead.
+/// [`DeviationError`], such as that there are no points where a plan has no bead.
 pub fn as_built(layers: &[Layer], profile: &Profile, part: &Mesh, task: &Task) -> Result<AsBuilt, DeviationError> {
     let metal = Metal::of(layers, profile);
     let grid = Grid::around(&[part.bounds(), metal.bounds()], profile);
@@ -114,12 +115,12 @@ fn held(grid: &Grid, profile: &Profile, part: &Mesh, task: &Task) -> Result<Vec<
     Ok(held)
 }
 
-/// What there is in the middle of a voxel.
+/// What lies at the middle of a voxel.
 #[derive(Debug, Clone, Copy)]
 struct Voxel {
     /// The part, where it is to be welded.
     part: bool,
-    /// The part, where it is there already.
+    /// The part, where it is already there.
     stock: bool,
     /// A bead.
     metal: bool,
@@ -130,9 +131,9 @@ struct Metal<'a>(Vec<Body<'a>>);
 
 struct Body<'a> {
     chart: &'a Chart,
-    /// By their undersides, the lowest first.
+    /// Sorted by their undersides, lowest first.
     courses: Vec<Course<'a>>,
-    /// The farthest from the underside of a course to its top, mm.
+    /// The greatest distance from the underside of a course to its top, mm.
     deepest: f64,
 }
 
@@ -160,7 +161,7 @@ impl RTreeObject for Bead {
 }
 
 impl Bead {
-    /// Whether it takes up a place (u, v, h) of its layer, which is `height` thick.
+    /// Whether it takes up a point (u, v, h) of its layer, which is `height` (mm) thick.
     fn holds(&self, p: DVec3, height: f64) -> bool {
         let Segment { from, to, width, .. } = self.0;
         let along = (to - from).truncate();
@@ -198,7 +199,7 @@ impl<'a> Metal<'a> {
         ends.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
     }
 
-    /// Whether there is metal at a place in space.
+    /// Whether there is metal at a point in space.
     fn contains(&self, p: DVec3) -> bool {
         self.0.iter().any(|body| body.contains(p))
     }
@@ -248,14 +249,14 @@ struct Grid {
 }
 
 impl Grid {
-    /// Around some boxes, with room for a bead beside them.
+    /// A grid around some boxes, with a bead's margin.
     fn around(boxes: &[(DVec3, DVec3)], profile: &Profile) -> Self {
         let low = boxes.iter().fold(DVec3::INFINITY, |low, around| low.min(around.0)) - profile.bead.width;
         let high = boxes.iter().fold(DVec3::NEG_INFINITY, |high, around| high.max(around.1)) + profile.bead.width;
         let size = high - low;
         let step = (size.element_product() / VOXELS).cbrt().max(FINEST * profile.layers.height);
         let counts = size.to_array().map(|size| (size / step).ceil().max(1.0) as usize);
-        // Faces of the part often lie on whole millimetres: no voxel's middle does.
+        // Faces of the part often lie on whole millimetres; this keeps the voxels' middles off them.
         Self { first: low + OFF * step, step, counts }
     }
 
@@ -263,7 +264,7 @@ impl Grid {
         self.first + DVec3::new(i as f64, j as f64, k as f64) * self.step
     }
 
-    /// Voxels by level, row and place in the row.
+    /// Index of a voxel: by level, then row, then place in the row.
     fn at(&self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.counts[1] + j) * self.counts[0] + i
     }
@@ -285,7 +286,7 @@ impl Grid {
         let slab = |k: usize| Slab { z: self.place([0, 0, k]).z + self.step / 2.0, height: self.step };
         let slices = Slicer::of_slabs(part, (0..levels).map(slab).collect(), options, task)?.all(task)?;
         let mut inside = vec![false; columns * rows * levels];
-        // The slicer cuts a slab that ends above the part lower down, where there still is some.
+        // A slab that ends above the part would be cut lower down, where there still is some of it.
         let within = |k: usize| self.place([0, 0, k]).z <= part.bounds().1.z;
         for (k, slice) in slices.into_iter().enumerate().take_while(|(k, _)| within(*k)) {
             let crossings = Region::from_normalised(slice.islands).rows(self.first.y, self.step, rows);
@@ -301,7 +302,8 @@ impl Grid {
         Ok(inside)
     }
 
-    /// Places on the surface of the metal: between two neighbours of which one is metal and the other nothing.
+    /// Points on the surface of the metal: between two neighbouring voxels of which one holds metal and the other
+    /// nothing.
     fn surface(
         &self,
         voxels: &[Voxel],
@@ -332,7 +334,7 @@ impl Grid {
     }
 }
 
-/// Where something that is held at one of two places and not at the other ends between them.
+/// Where the boundary lies between two points, of which `from` is `held` and `to` is not, or the other way round.
 fn edge([mut from, mut to]: [DVec3; 2], held: bool, holds: impl Fn(DVec3) -> bool) -> DVec3 {
     let accuracy = SURFACE * from.distance(to);
     while from.distance(to) > accuracy {

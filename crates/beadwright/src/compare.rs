@@ -56,7 +56,7 @@ pub struct Totals {
     pub metal_volume_mm3: f64,
     /// Turns sharper than 30° within passes.
     pub turns: usize,
-    /// The shortest time for which the torch moves with the arc on, s; `None` without passes.
+    /// The shortest time that the torch moves with the arc on in one pass, s; `None` without passes.
     pub shortest_arc_s: Option<f64>,
     /// Time for gas, starting and ending the arc, and for craters, s.
     pub start_stop_time_s: f64,
@@ -100,7 +100,7 @@ struct EntryBuilder<'a> {
 impl<'a> EntryBuilder<'a> {
     fn new(settings: DepositSettings, bounds: &Bounds, chosen: &'a Chosen) -> Self {
         let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
-        // Beads are laid on all that lie below.
+        // Beads are laid on all layers below, so all must be judged.
         let judge = if chosen.is_none() { judge.with_stack(bounds) } else { judge };
         Self { judge, chosen, layers: Vec::new(), turns: 0 }
     }
@@ -200,7 +200,7 @@ impl Totals {
         }
     }
 
-    /// The totals of a program read back; `layers` are its layers. The profile gives the times of its starts, ends and
+    /// The totals of a program read back, with its `layers`. The profile gives the times of its starts, ends and
     /// corners.
     pub fn of_program(totals: &ReadTotals, layers: &[Layer], profile: &Profile) -> Self {
         let nominal = plan::deposit_settings(profile).nominal;

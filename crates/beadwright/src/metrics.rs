@@ -39,7 +39,7 @@ pub struct Metrics {
     pub cost: Option<f64>,
     /// Its currency.
     pub currency: String,
-    /// The shortest time for which the arc is on and moving in a pass, s; `None` without passes.
+    /// The shortest time that the torch moves with the arc on in one pass, s; `None` without passes.
     pub shortest_arc_s: Option<f64>,
     /// Time for gas, starting and ending the arc, and for craters, s: what every arc start costs.
     pub start_stop_time_s: f64,
@@ -49,13 +49,13 @@ pub struct Metrics {
     pub heat_input_j_per_mm: Option<f64>,
     /// Sum of the slice areas, mm².
     pub slice_area_mm2: f64,
-    /// Sum of the areas within reach of a bead, mm².
+    /// Sum of the areas that beads cover, mm².
     pub planned_area_mm2: f64,
     /// Volume of the layers, mm³.
     pub part_volume_mm3: f64,
-    /// Volume of the part's mesh, mm³; none where it is not closed, and for curves.
+    /// Volume of the part's mesh, mm³; `None` where it is not closed, and for curves.
     pub mesh_volume_mm3: Option<f64>,
-    /// Of a preform, volume of the part that is milled from it, mm³.
+    /// Volume of the part that is milled from a preform, mm³; `None` without a preform.
     pub milled_part_volume_mm3: Option<f64>,
     /// Volume of the beads, mm³.
     pub deposited_volume_mm3: f64,
@@ -81,12 +81,12 @@ struct Rates {
     gas: f64,
     gas_idle: f64,
     cost: Cost,
-    /// How layers lie where they are not the same thickness everywhere.
+    /// How layers lie in space, where their thickness varies.
     layers: Option<LayersSection>,
 }
 
 impl Metrics {
-    /// Totals of nothing yet.
+    /// The totals before any layer is counted.
     pub fn new(profile: &Profile) -> Self {
         let process = &profile.process;
         let rates = Rates {
@@ -184,7 +184,7 @@ impl Metrics {
         self.cost = self.rates.cost.of(self.total_time_s / 3600.0, self.wire_mass_kg, self.gas_m3);
     }
 
-    /// Volume that a layer adds, mm³: the upper of two fills what the lower one leaves.
+    /// Volume that a layer adds, mm³; the upper layer of a pair fills what the lower one leaves.
     fn volume(&mut self, layer: &Layer) -> f64 {
         let wedge = self.rates.layers.as_ref().and_then(|layers| layers.wedge(layer));
         let whole = wedge.map_or(layer.slice_area * layer.height, |wedge| wedge.volume(&layer.islands));
@@ -218,7 +218,7 @@ impl Turns {
     }
 }
 
-/// Totals are alike whatever is still to come.
+/// Totals are compared without this state.
 impl PartialEq for Turns {
     fn eq(&self, _: &Self) -> bool {
         true

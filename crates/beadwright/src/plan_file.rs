@@ -1,9 +1,9 @@
-//! plan.json, versions 2 and 3: the plan as text, written layer by layer, and read back. It carries the whole profile that it was
-//! made with. Lengths are in mm, paces in mm/s.
+//! plan.json, versions 2 and 3: the plan as text, written layer by layer and read back. It contains the whole profile
+//! that it was made with. Lengths are in mm, paces in mm/s.
 //!
-//! Version 3, for plans whose layers are not level (the profile's `layers.chart`), gives points in the part's space, close enough
-//! together to follow the layer, with the layer's normal at each (`normals`). `z`, `height` and islands are those of the layer
-//! as the chart unrolls it.
+//! Version 3 is for plans whose layers are not level (the profile's `layers.chart`). It gives points in space, close
+//! enough together to follow the layer, with the layer's normal at each (`normals`). `z`, `height` and islands are
+//! those of the layer as the chart unrolls it.
 //!
 //! Version 1, which is still read, holds only the name of the profile and its bead, and calls the pace `speed`.
 
@@ -30,7 +30,7 @@ const NEWEST: u32 = 3;
 /// Decimals of normals: 0.0001°.
 const NORMAL_DECIMALS: usize = 6;
 
-/// Decimals of coordinates: the 0.1 µm grid of the plane.
+/// Decimals of coordinates: the 0.1 µm grid of planar geometry.
 const DECIMALS: usize = 4;
 
 /// The text before the first layer.
@@ -87,7 +87,7 @@ pub fn tail() -> &'static str {
 
 fn pass(text: &mut String, pass: &Pass, normals: Option<&[DVec3]>) {
     text.push_str(&format!("{{\"kind\":\"{}\",\"closed\":{},\"points\":", pass.kind.name(), pass.closed));
-    // Nearly all points of a pass lie at one height: it is turned into text once.
+    // Nearly all points of a pass have the same height, so it is turned into text once.
     let (mut height, mut z) = (f64::NAN, String::new());
     list(text, &pass.points, |text, p| {
         if p.z != height {
@@ -151,7 +151,7 @@ pub struct PlanFile {
     pub header: Header,
     /// The profile it was made with; `None` in version 1.
     pub profile: Option<Profile>,
-    /// The settings and bead it was made for; `None` in files of version 1 that do not say.
+    /// The deposit settings and bead that it was made for; `None` in files of version 1 that do not give them.
     pub settings: Option<DepositSettings>,
     /// Its layers; planned areas and warnings are not in the file.
     pub layers: Vec<Layer>,
@@ -169,16 +169,16 @@ pub enum PlanFileError {
         "this plan.json has version {0}; versions 1 to {NEWEST} are read. Make the plan again with `beadwright plan`."
     )]
     Version(u32),
-    /// Whether layers are level depends on the version.
+    /// Version and chart disagree on whether layers are level.
     #[error(
-        "this plan.json has version {0}, which does not go with layers.chart of its profile: layers that are not level are in version \
-         {NEWEST}. Make the plan again with `beadwright plan`."
+        "this plan.json has version {0}, which does not fit layers.chart of its profile: layers that are not level \
+         are in version {NEWEST}. Make the plan again with `beadwright plan`."
     )]
     Chart(u32),
     /// Not in millimetres.
     #[error("this plan.json is in \"{0}\"; plans are in \"mm\". Make the plan again with `beadwright plan`.")]
     Units(String),
-    /// Its profile is not one.
+    /// Its profile cannot be read.
     #[error("the profile in this plan.json: {0}. Make the plan again with `beadwright plan`.")]
     Profile(#[from] ProfileError),
     /// Nothing to weld.
@@ -198,7 +198,7 @@ pub enum PlanFileError {
         /// What is wrong.
         reason: &'static str,
     },
-    /// Values that do not belong together.
+    /// Values that do not fit together.
     #[error("layer {layer}, pass {pass}: {reason}. Make the plan again with `beadwright plan`.")]
     Pass {
         /// Number of the layer, from 1.
@@ -226,7 +226,7 @@ pub enum PlanFileError {
 /// ```
 ///
 /// # Errors
-/// [`PlanFileError`] with the line, or the layer and pass.
+/// [`PlanFileError`], which names the line, or the layer and pass.
 pub fn read(text: &str) -> Result<PlanFile, PlanFileError> {
     let file: File = serde_json::from_str(text)?;
     if !(1..=NEWEST).contains(&file.version) {
@@ -361,12 +361,12 @@ impl FileBead {
     }
 }
 
-/// Whether a width, a height (mm) or a pace (mm/s) is one that a machine could lay.
+/// Whether a width or a height (mm) or a pace (mm/s) is possible for a machine.
 fn possible(value: f64) -> bool {
     value > 0.0 && value <= MAX_MEASURE
 }
 
-/// Greatest width, height or pace.
+/// Greatest width (mm), height (mm) or pace (mm/s).
 const MAX_MEASURE: f64 = 2000.0;
 
 impl FileLayer {
@@ -398,7 +398,7 @@ impl FileLayer {
     }
 }
 
-/// Whether a coordinate is in reach, mm.
+/// Whether a coordinate (mm) is within bounds.
 fn near(coordinate: f64) -> bool {
     coordinate.abs() <= MAX_REACH_MM
 }
@@ -422,7 +422,7 @@ impl FilePass {
     }
 }
 
-/// What no machine could weld in a pass that was read, as the end of a sentence.
+/// What no machine could weld in a pass that was read, as a clause.
 pub(crate) fn check_pass(pass: &Pass) -> Result<(), &'static str> {
     let count = pass.points.len();
     if count < 2 {

@@ -25,8 +25,8 @@ pub struct Reading {
     pub arc_off: Vec<String>,
     /// Bead width, mm, instead of the one from the program or the profile.
     pub bead_width: Option<f64>,
-    /// Whether somebody chose the profile. A printer's program that names no profile is not read with one that nobody chose: a
-    /// welding bead would be laid where filament is meant.
+    /// Whether the user chose the profile. A printer's program that names no profile is not read with a default one,
+    /// which would lay a welding bead where filament is meant.
     pub profile_chosen: bool,
 }
 
@@ -142,7 +142,7 @@ pub fn named_profile(text: &str) -> Option<&'static str> {
     text.lines().take(HEAD).find_map(named)
 }
 
-/// What a plan calls its language.
+/// The language of a plan.
 const PLAN: &str = "plan";
 
 impl ReadBack {
@@ -176,8 +176,9 @@ impl ReadBack {
         }
     }
 
-    /// A program in anyone's language; `name` is that of its file, and `module` gives the text of a module by its name. With a
-    /// part, its slices become the islands of the layers, and a program that lies elsewhere is centred on it.
+    /// A program in any known language; `name` is that of its file, and `module` gives the text of a module by its
+    /// name. With a part, its slices become the islands of the layers, and a program that lies elsewhere is centred on
+    /// it.
     ///
     /// ```
     /// use beadwright::read_back::{ReadBack, Reading};

@@ -18,7 +18,7 @@ use beadwright::task::Task;
 use glam::DVec3;
 use std::collections::BTreeSet;
 
-/// The speed that the abstract of the paper would need if its printed 0.02 m/min were 0.02 m/s, mm/s.
+/// The speed if the 0.02 m/min printed in the paper's abstract were 0.02 m/s, mm/s.
 const PRINTED_SPEED: f64 = 20.0;
 /// Index of the layer that is drawn, from 0.
 const LAYER: usize = 4;
@@ -35,7 +35,7 @@ const PARTS: [&str; 4] = ["cross", "star", "gear", "propeller"];
 pub fn run(task: &Task) -> Result<Reproduced, ReproduceError> {
     let mut profile = Profile::built_in("cmt-al2319-kuka").map_err(|e| wrong(&e))?;
     profile.fill.strategy = StrategyName::Hybrid;
-    // The paper's layers are of one height, its beads of one speed.
+    // The paper's layers have one height, its beads one speed.
     profile.layers.level = false;
     let literal = literal(&profile, ScanAlong::Auto);
     let mesh = part("propeller", 0.0)?;
@@ -87,7 +87,7 @@ fn wrong(error: &dyn std::fmt::Display) -> ReproduceError {
     ReproduceError(error.to_string())
 }
 
-/// An example part, turned about the vertical by some degrees.
+/// An example part, turned about the vertical by this many degrees.
 fn part(name: &str, turn: f64) -> Result<Mesh, ReproduceError> {
     let missing = || ReproduceError(format!("there is no example part called {name}"));
     let mut mesh = example::find(name).ok_or_else(missing)?.mesh();
@@ -106,7 +106,7 @@ fn judged(mesh: &Mesh, profile: &Profile, strategy: StrategyName, task: &Task) -
     compare::strategy(mesh, profile, strategy, plan::deposit_settings(profile), &None, task).map_err(|e| wrong(&e))
 }
 
-/// The literal method with both directions of lines, ours, and what they are compared with.
+/// The literal method with both directions of lines, ours, and the methods that they are compared with.
 fn entries(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Entry>, ReproduceError> {
     let named = |name: &str, profile: &Profile| {
         Ok(Entry { name: name.to_owned(), ..judged(mesh, profile, StrategyName::Hybrid, task)? })
@@ -129,7 +129,7 @@ fn entries(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Entry>, Re
     Ok(entries)
 }
 
-/// What is judged, by the worst of all turns.
+/// The goals that are judged, by the worst of all turns.
 fn goals(profile: &Profile, task: &Task) -> Result<Vec<Goal>, ReproduceError> {
     let mut goals = literal_goals(profile, task)?;
     for name in PARTS {
@@ -146,12 +146,12 @@ fn turns() -> impl Iterator<Item = f64> {
     (0..180).step_by(TURN).map(|turn| turn as f64)
 }
 
-/// Arc starts a layer.
+/// Arc starts per layer.
 fn starts(entry: &Entry) -> f64 {
     entry.totals.arc_starts as f64 / entry.layers.len().max(1) as f64
 }
 
-/// What the literal method makes of the propeller.
+/// The goals for the literal method on the propeller.
 fn literal_goals(profile: &Profile, task: &Task) -> Result<Vec<Goal>, ReproduceError> {
     let (short, long) = (literal(profile, ScanAlong::Short), literal(profile, ScanAlong::Long));
     let (mut most, mut void, mut saved, mut better): (f64, f64, f64, f64) = (0.0, 0.0, f64::INFINITY, f64::INFINITY);
@@ -202,7 +202,7 @@ fn findings(profile: &Profile, task: &Task) -> Result<Vec<String>, ReproduceErro
     Ok(check::grouped(&found).iter().map(|finding| format!("{}: {}", finding.kind, finding.text)).collect())
 }
 
-/// Our hybrid beside plain contours.
+/// Our hybrid next to plain contours.
 fn beside_contours(name: &str, profile: &Profile, task: &Task) -> Result<Goal, ReproduceError> {
     let (mut times, mut humps, mut more) = (f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);
     for turn in turns() {
@@ -223,7 +223,7 @@ fn beside_contours(name: &str, profile: &Profile, task: &Task) -> Result<Goal, R
     ))
 }
 
-/// Innovation 2 of the paper: contours and their pieces joined into few passes, on all layers of the propeller.
+/// Innovation 2 of the paper: contours and pieces of them joined into few passes, on all layers of the propeller.
 fn joining(method: &str, profile: &Profile, task: &Task) -> Result<Goal, ReproduceError> {
     let mesh = part("propeller", 0.0)?;
     let slicer = Slicer::new(&mesh, profile.slice_options(), task).map_err(|e| wrong(&e))?;

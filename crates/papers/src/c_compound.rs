@@ -21,7 +21,7 @@ const PAPER: f64 = 0.591;
 /// The stepover of the zigzag lines, in bead widths.
 const TANGENT: f64 = 0.738;
 
-/// What the paper says of its four specimens, and ours next to them.
+/// The paper's remarks on its four specimens, with ours next to them.
 const SPECIMENS: [(StrategyName, LineEnds, &str, f64, &str); 6] = [
     (StrategyName::Zigzag, LineEnds::Plain, "zigzag only", PAPER, "the outline is ragged"),
     (StrategyName::Contour, LineEnds::Plain, "contour only", PAPER, "the shape is kept, a gap in the middle"),
@@ -31,7 +31,7 @@ const SPECIMENS: [(StrategyName, LineEnds, &str, f64, &str); 6] = [
     (StrategyName::Loop, LineEnds::Plain, "our loop", PAPER, "ours, not in the paper"),
 ];
 
-/// The parts on which the distance is tried.
+/// The parts on which the distance is varied.
 const PARTS: [&str; 5] = ["cross", "star", "gear", "propeller", "plate"];
 /// The angles, about the vertical, at which each of them is tried, degrees.
 const TURNS: [f64; 12] = [0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0, 105.0, 120.0, 135.0, 150.0, 165.0];
@@ -43,14 +43,15 @@ const SWEEPS: [(&str, f64, RasterSpacing); 3] = [
     ("lines fitted to long edges", 0.0, RasterSpacing::Fitted),
     ("turned by 10°", ASKEW, RasterSpacing::Fitted),
 ];
-/// The sweep may fall by this much on its way up, % of the area.
+/// By this much the void may fall as the distance grows, % of the area.
 const JUMP: f64 = 0.2;
 
-/// Figure 8: a part with holes, and one of 200 × 200 mm, which the paper shows only as a picture: our gear stands in.
+/// Figure 8: a part with holes, and one of 200 × 200 mm, which the paper shows only as a picture; our gear takes its
+/// place.
 const FIGURE_8: [(&str, &str, f64); 2] =
     [("plate", "120 × 80 mm with holes", 1.0), ("gear", "200 × 200 mm", 200.0 / 140.0)];
 
-/// What is laid on them, and what the paper says of it: it welded them by compound paths alone.
+/// What is laid on them, and the paper's remarks: it welded them with compound paths only.
 const LAID_8: [(StrategyName, LineEnds, &str, &str); 4] = [
     (StrategyName::Compound, LineEnds::Plain, "compound", "dense and even, no pores beside the contour"),
     (StrategyName::Compound, LineEnds::Hooked, "compound, hooked ends", "ours, not in the paper"),
@@ -63,10 +64,10 @@ const LAID_8: [(StrategyName, LineEnds, &str, &str); 4] = [
 struct Case<'a> {
     part: &'a str,
     scale: f64,
-    /// About the vertical, degrees.
+    /// Its turn about the vertical, degrees.
     turn: f64,
     strategy: StrategyName,
-    /// From the contour to the zigzag, in bead widths.
+    /// Distance from the contour to the zigzag, in bead widths.
     gap: f64,
     lattice: RasterSpacing,
     ends: LineEnds,
@@ -207,14 +208,14 @@ impl Case<'_> {
     }
 }
 
-/// The cross over distances from contour to zigzag.
+/// The cross at various distances from contour to zigzag.
 fn sweep(turn: f64, lattice: RasterSpacing, task: &Task) -> Result<Vec<(f64, Entry)>, ReproduceError> {
     let gaps: Vec<f64> = (0..=35).map(|k| 0.45 + 0.01 * f64::from(k)).collect();
     let judged = |gap: f64| Ok((gap, Case { gap, turn, lattice, ..CROSS }.judged(task)?));
     gaps.into_par_iter().map(judged).collect()
 }
 
-/// Five parts at twelve angles, lines fitted to long edges.
+/// Five parts at twelve angles, with lines fitted to long edges.
 ///
 /// # Errors
 /// [`ReproduceError`] when the task was cancelled.
@@ -274,7 +275,7 @@ fn most(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
 }
 
-/// What is judged.
+/// The goals that are judged.
 fn goals(specimens: &[(&str, &str, [Entry; 2])], sweeps: &[(&str, Vec<(f64, Entry)>)], turned: &[Turned]) -> Vec<Goal> {
     let mut goals = Vec::new();
     if let [zigzag, contour, (_, _, far), (_, _, near), ..] = specimens {
@@ -309,7 +310,7 @@ fn goals(specimens: &[(&str, &str, [Entry; 2])], sweeps: &[(&str, Vec<(f64, Entr
     goals
 }
 
-/// What five parts at twelve angles are judged by: the paper's plain ends, then hooked ends.
+/// The goals for five parts at twelve angles: with the paper's plain ends, then with hooked ends.
 pub fn of_turned(turned: &[Turned]) -> Vec<Goal> {
     let ends: [(&str, Voids); 2] = [("plain", |t| &t.plain), ("hooked", |t| &t.hooked)];
     let of = |(k, (ends, voids)): (usize, (&str, Voids))| {
@@ -334,7 +335,7 @@ pub fn of_turned(turned: &[Turned]) -> Vec<Goal> {
     ends.into_iter().enumerate().flat_map(of).collect()
 }
 
-/// How far the void falls below what it was at a smaller distance, % of the area.
+/// The greatest fall of the void from its value at a smaller distance, % of the area.
 fn greatest_fall(sweep: &[(f64, Entry)]) -> f64 {
     let (mut most, mut fall): (f64, f64) = (0.0, 0.0);
     for (_, entry) in sweep {

@@ -2,8 +2,8 @@
 //! pile up.
 //!
 //! The paper prints walls, currents, speeds, layers and heights, but neither B₁, h₁, h_n nor the wire feed. One of them
-//! has to be solved backwards for each part, from its layers and its height. So these two agree by construction, and
-//! only what was not used for that is judged.
+//! has to be derived for each part from its layers and its height. So these two agree by construction, and only what
+//! was not used for that is judged.
 
 use crate::goal::{self, Goal};
 use crate::{ReproduceError, Reproduced};
@@ -54,7 +54,7 @@ pub const PARTS: [Part; 4] = [
     Part { name: "pot", wall: 4.0, current: 119.0, speed: 10.0, layers: 66, height: 80.0 },
 ];
 
-/// Numbers of layers of the frame that are judged: what the paper's first plan could be welded, and all.
+/// Numbers of layers after which the frame is judged: as far as the paper's first plan could be welded, and all.
 const JUDGED: [usize; 2] = [8, 18];
 
 /// How the parts are turned about the vertical, degrees; of two figures the worse is reported.
@@ -63,23 +63,24 @@ const TURNS: [f64; 2] = [0.0, 33.0];
 /// Good beads of the paper (section 3): λ, A, mm/s.
 const WINDOW: [(f64, f64); 3] = [(2.5, 3.0), (100.0, 150.0), (6.0, 10.0)];
 
-/// A part as planned with the bead that its own layers and height ask for.
+/// A part as planned with the bead derived from its layers and height.
 pub struct Built {
     /// What the paper prints.
     pub part: &'static Part,
-    /// The profile: the bead solved backwards, and the wire that lays it at the paper's speed.
+    /// The profile: the derived bead, and the wire that lays it at the paper's speed.
     pub profile: Profile,
-    /// The bead solved backwards.
+    /// The derived bead.
     pub wall: WallBead,
     /// The plan.
     pub plan: Plan,
-    /// Metal that the wire brings over the volume of the part.
+    /// Metal that the wire brings, divided by the volume of the part.
     pub metal: f64,
     /// Least and greatest speed of the torch, mm/s.
     pub speeds: (f64, f64),
     /// Findings of the check `wire-balance`.
     pub unbalanced: usize,
-    /// The same from centre-lines instead of a solid: layers, and length of all passes over that of the solid's.
+    /// The same part from centre-lines instead of a solid: number of layers, and length of all passes divided by that
+    /// of the solid's.
     pub by_curves: (usize, f64),
 }
 
@@ -94,11 +95,11 @@ pub struct Heights {
 
 /// The frame under one plan.
 pub struct Frame {
-    /// Arc starts in the layer that has most.
+    /// Arc starts in the layer that has the most.
     pub starts: usize,
     /// Heights after 8 and after 18 layers.
     pub heights: [Heights; 2],
-    /// Heights after 8 layers by place: corners, junctions of the outer walls, middle, and elsewhere.
+    /// Heights after 8 layers by location: corners, junctions of the outer walls, middle, and elsewhere.
     pub places: [Heights; 4],
     /// The first layer.
     picture: Option<Picture>,
@@ -114,13 +115,13 @@ pub struct Figures {
     pub pot_by_gourd: usize,
     /// Layers of the blade with the pot's wire feed, since the same current sets it.
     pub blade_by_pot: usize,
-    /// Layers of the blade at the speed of gourd and pot, with as much wire for each ampere as the frame.
+    /// Layers of the blade at the speed of gourd and pot, with as much wire per ampere as the frame.
     pub blade_by_frame: usize,
     /// The frame as planned.
     pub planned: Frame,
     /// The frame welded straight through its junctions: the paper's initial plan.
     pub straight: Frame,
-    /// The frame in two passes with as many turns as there can be: a plan like the paper's path 1.
+    /// The frame in two passes with as many turns as possible: a plan like the paper's path 1.
     pub turning: Frame,
 }
 
@@ -205,7 +206,7 @@ pub fn figures(degrees: f64, task: &Task) -> Result<Figures, ReproduceError> {
     let count = |part: &Part, area: f64| -> Result<usize, ReproduceError> {
         Ok(plan::slabs(&mesh(part, degrees)?, &profile(part, area)?, task).map_err(wrong)?.len())
     };
-    // At one current the synergic line feeds one wire speed, so a slower bead has more metal.
+    // At the same current the synergic line feeds the same wire speed, so a slower bead has more metal.
     let slower = pot.part.speed / blade.part.speed;
     let for_each_ampere = tian.wall.area() * tian.part.speed / tian.part.current;
     Ok(Figures {
@@ -240,8 +241,8 @@ fn profile(part: &Part, area: f64) -> Result<Profile, ReproduceError> {
     (profile.fill.overlap, profile.fill.stepover) = (Overlap::Free, Some(part.wall));
     profile.bead.width = part.wall;
     profile.bead.height = profile.bead.section.height_of(part.wall, area);
-    // Paths that touch at a junction keep this far from its middle, and ends this far from paths that run through: of all, the
-    // nearest with which nothing is higher than 1.25 × the mean.
+    // Paths that touch at a junction keep this far from its middle, and ends this far from paths that run through: the
+    // smallest distances at which nothing is higher than 1.25 × the mean.
     (profile.wall.junction_gap, profile.wall.end_gap) = (0.29, 0.37);
     profile.process.current = Some(part.current);
     profile.process.deposition_speed = part.speed;
@@ -250,7 +251,7 @@ fn profile(part: &Part, area: f64) -> Result<Profile, ReproduceError> {
     Ok(profile)
 }
 
-/// Area of the bead, mm², with which as many layers as the paper has end at its height.
+/// The bead area, mm², at which the paper's number of layers ends at its height.
 fn solved_area(part: &Part, mesh: &Mesh, task: &Task) -> Result<f64, ReproduceError> {
     let upright = part.wall * part.height / part.layers as f64;
     let (mut low, mut high) = (0.7 * upright, 1.5 * upright);
@@ -327,9 +328,9 @@ impl Heights {
     }
 }
 
-/// Lowest and highest point after each of [`JUDGED`] layers, in multiples of their `mean` (mm), where the metal of a bead
-/// stays as it would lie on a plate: what the paper's welders saw at junctions, before metal flows. And the same by place,
-/// after the first of these numbers of layers, for a frame turned by some degrees.
+/// Lowest and highest point after each of [`JUDGED`] layers, as multiples of their `mean` (mm), where the metal of a
+/// bead stays as it would lie on a plate: what the paper's welders saw at junctions, before metal flows. And the same
+/// by location, after the first of these numbers of layers. The frame is turned by `degrees`.
 fn piled(layers: &[Layer], settings: &DepositSettings, mean: f64, degrees: f64) -> ([Heights; 2], [Heights; 4]) {
     let points = layers.iter().flat_map(|layer| &layer.passes).flat_map(|pass| &pass.points);
     let Some(bounds) = Bounds::of(points.map(|point| point.truncate())) else {
@@ -350,7 +351,7 @@ fn piled(layers: &[Layer], settings: &DepositSettings, mean: f64, degrees: f64) 
         let (nominal, mean) = (settings.nominal.rise * (k + 1) as f64, mean * (k + 1) as f64);
         let over_mean = |excess: f64| (nominal + excess).max(0.0) / mean;
         let Some(at) = JUDGED.iter().position(|count| *count == k + 1) else { continue };
-        // Where nothing deviates counts as well.
+        // Places without any deviation count as well.
         heights[at] = excess.iter().fold(Heights::NONE, |all, excess| all.with(over_mean(*excess)));
         if at == 0 {
             for point in (0..grid.rows).flat_map(core) {
@@ -379,10 +380,10 @@ fn place(point: DVec2, degrees: f64, width: f64) -> usize {
     }
 }
 
-/// A pass by the corners it runs through, in halves of the frame, and whether it is closed.
+/// A pass given by the corners that it runs through, in half widths of the frame, and whether it is closed.
 type ByHand = (bool, &'static [(f64, f64)]);
 
-/// The paper's initial plan (figure 3a): around, and straight through the middle, along and across.
+/// The paper's initial plan (figure 3a): around, and straight through the middle, lengthwise and crosswise.
 const STRAIGHT: [ByHand; 3] = [
     (true, &[(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]),
     (false, &[(-1.0, 0.0), (1.0, 0.0)]),
@@ -413,7 +414,7 @@ fn by_hand(layer: &Layer, degrees: f64, passes: &[ByHand]) -> Layer {
     Layer { passes: passes.iter().map(pass).collect(), ..layer.clone() }
 }
 
-/// What is judged, by the worst of the figures.
+/// The goals that are judged, by the worst of the figures.
 pub fn goals(all: &[Figures]) -> Vec<Goal> {
     let worst = |value: &dyn Fn(&Figures) -> f64| all.iter().map(value).fold(f64::NEG_INFINITY, f64::max);
     let least = |value: &dyn Fn(&Figures) -> f64| -worst(&|f| -value(f));
@@ -508,10 +509,11 @@ pub fn goals(all: &[Figures]) -> Vec<Goal> {
     ]
 }
 
-/// Lengths of paths from solid and curves may differ by this: the path of a solid ends half a bead before its end.
+/// Lengths of paths from solid and curves may differ by this fraction: the path of a solid ends half a bead before its
+/// end.
 const LIKE: f64 = 0.05;
 
-/// What is asked of heights over the mean, everywhere.
+/// Range required of heights over the mean, everywhere.
 const BAND: (f64, f64) = (0.8, 1.25);
 
 /// The places of [`Frame::places`].

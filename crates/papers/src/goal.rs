@@ -1,4 +1,4 @@
-//! What a page sets out to reach, and whether it does.
+//! The goals of a page, and whether they are reached.
 
 use beadwright::report::sheet::{Row, Sheet};
 

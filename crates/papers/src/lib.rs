@@ -26,7 +26,7 @@ pub struct Reproduced {
 
 /// A paper.
 pub struct Paper {
-    /// The name people type.
+    /// The name that users type.
     pub name: &'static str,
     /// Authors, year and subject.
     pub about: &'static str,

@@ -7,7 +7,7 @@ pub(crate) struct Sweep {
     values: Vec<String>,
 }
 
-/// No key takes more values than this.
+/// Maximum number of values of a key.
 const MOST_VALUES: usize = 10_000;
 
 impl Sweep {

@@ -19,7 +19,7 @@ pub(crate) enum Format {
 /// Pages with more rows than this have no pictures of layers: browsers would take long to open them.
 const MOST_PICTURES: usize = 60;
 
-/// A file name and the format of its ending.
+/// A file name, and the format that its extension stands for.
 pub(super) fn parse_output(text: &str) -> Result<(PathBuf, Format), String> {
     let path = PathBuf::from(text);
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
@@ -31,14 +31,14 @@ pub(super) fn parse_output(text: &str) -> Result<(PathBuf, Format), String> {
     }
 }
 
-/// A figure that people compare.
+/// A figure to compare plans by.
 struct Column {
     /// With its unit.
     name: &'static str,
     text: fn(&Planned) -> String,
 }
 
-/// What people see; files for programs hold all totals.
+/// The columns that people see; files for programs hold all totals.
 const COLUMNS: [Column; 9] = [
     Column { name: "layers", text: |p| p.summary.metrics.layers.to_string() },
     Column { name: "arc starts", text: |p| p.summary.metrics.arc_starts.to_string() },
@@ -76,7 +76,7 @@ impl Row {
         }
     }
 
-    /// Why the part should not be welded so, on one line; empty where nothing speaks against it.
+    /// Why the plan should not be welded, on one line; empty if nothing speaks against it.
     fn problem(&self) -> String {
         match &self.planned {
             Ok(planned) => planned.summary.forbidden.join(" "),
@@ -120,7 +120,7 @@ impl Table {
         Self { rows, swept }
     }
 
-    /// The number of plans, of those that failed, and of those that should not be welded.
+    /// The number of plans, how many of them failed, and how many should not be welded.
     pub(super) fn counts(&self) -> (usize, usize, usize) {
         let failed = self.rows.iter().filter(|row| row.planned.is_err()).count();
         let problems = self.rows.iter().filter(|row| !row.problem().is_empty()).count();

@@ -78,7 +78,7 @@ fn a_plan_is_compared_with_its_part() {
     let status = plan.current_dir(folder.path()).args(["plan", "cross.stl", "-o", "out", "--quiet"]).status().unwrap();
     assert!(status.success());
     let text = said(folder.path(), &["cross.stl", "out/plan.json"]);
-    assert!(text.starts_with("out/plan.json against cross.stl: ") && text.contains("is in common"), "{text}");
+    assert!(text.starts_with("out/plan.json against cross.stl: ") && text.contains("is shared"), "{text}");
     let built = &figures(folder.path(), &["cross.stl", "out/plan.json"])["built"];
     let figure = |name: &str| built[name].as_f64().unwrap();
     assert!(figure("agreement") > 0.95 && figure("common") <= figure("part").min(figure("metal")), "{built}");

@@ -1,4 +1,4 @@
-"""Who works: processes of this machine, or anything with the interface of ``concurrent.futures``."""
+"""What runs the plans of a study: processes of this machine, or anything with the interface of ``concurrent.futures``."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class LocalExecutor(Executor):
 
 
 class RayExecutor(Executor):
-    """Ray's workers: of the cluster that ``ray.init`` joined, or of this machine. Ray itself repeats what a killed one did."""
+    """Ray's workers: of the cluster that ``ray.init`` joined, or of this machine. Ray itself repeats the work of a killed one."""
 
     def __init__(self, retries: int = 3) -> None:
         import ray

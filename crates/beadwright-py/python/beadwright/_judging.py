@@ -149,7 +149,7 @@ def simulate(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Judged:
-    """Judges what a plan or anyone's program would build.
+    """Judges what a plan, or a program from any source, would build.
 
     A program is a path or its text (then ``modules`` has the texts of what it calls, by file name, as :meth:`Plan.post`
     gives them), in G-code, KRL, RAPID, FANUC TP, INFORM or URScript. With the ``part`` it was made for, voids and overfill

@@ -69,7 +69,7 @@ class Pass:
 
 
 class Layer:
-    """A layer: what is to be filled of the part, and the passes that fill it."""
+    """A layer: the area of the part to be filled, and the passes that fill it."""
 
     __slots__ = ("_inner",)
 

@@ -1,4 +1,4 @@
-"""Which of many plans nobody beats, and a picture of them."""
+"""Which of many plans no other beats, and a picture of them."""
 
 from __future__ import annotations
 

@@ -62,7 +62,7 @@ class Part:
         ``units`` of the file are guessed where they are left out; ``scale`` enlarges the part, ``turn`` turns it about x,
         then y, then z (°), ``centre`` moves its middle to x = y = 0, and ``shift`` then moves it along x and y (mm).
         ``stand="flat"`` lays it onto its largest flat face, ``"orient"`` onto that with the least overhang. Curves and
-        outlines grow up to ``height`` (mm). From a file that ends too early, ``accept_damaged`` uses what there is.
+        outlines grow up to ``height`` (mm). From a file that ends too early, ``accept_damaged`` uses the triangles that it has.
 
         Raises :class:`BeadwrightError` with the path, the line where there is one, and what helps.
         """
@@ -147,13 +147,13 @@ class Part:
 
     @property
     def figures(self) -> dict[str, Any] | None:
-        """What a preform weighs, takes and costs (kg, hours, the currency of the profile); None for a part as it is drawn."""
+        """Mass, time and cost of a preform (kg, hours, the currency of the profile); ``None`` for a part as it is drawn."""
         return self._inner.figures
 
     @property
     def milled_faces(self) -> list[dict[str, Any]]:
         """The faces of the part that is milled from a preform, the largest first: ``area`` (mm²), ``place`` (mm), ``normal``, and
-        ``stock``, the least, mean and most metal over it (mm). Empty for a part as it is drawn.
+        ``stock``, the least, mean and greatest thickness of the metal over it (mm). Empty for a part as it is drawn.
         """
         return self._inner.milled_faces
 

@@ -111,7 +111,7 @@ def _found(source: str) -> tuple[str, str | None, Path]:
 
 
 def _file(source: str) -> Path | None:
-    """The file that a word means: a path, or one of the user's own profiles."""
+    """The file that a name stands for: a path, or one of the user's own profiles."""
     path = Path(source)
     if path.suffix == ".toml" or len(path.parts) > 1 or path.is_file():
         return path

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class ReachFinding(NamedTuple):
-    """What is in the way of the robot, or nearly is."""
+    """What stops the robot, or nearly does."""
 
     fatal: bool
     sentence: str
@@ -87,7 +87,7 @@ def reach(
     at: tuple[float, float, float] | tuple[float, float, float, float] | None = None,
     suggest: bool = False,
 ) -> Reach:
-    """Walks a plan in a ``cell``: a built-in name, or a TOML file.
+    """Follows a plan with the robot of a ``cell``: a built-in name, or a TOML file.
 
     ``at`` is the place of the part's origin instead of the cell's: x, y, z (mm) and the turn about the vertical (°).
     ``suggest`` searches for a better one.

@@ -98,7 +98,7 @@ class Study:
         self.rows = rows
         #: The Parquet file.
         self.path = path
-        #: How many plans were made this time; the others were known.
+        #: Number of plans made this time; the others were already known.
         self.planned = planned
 
     def table(self) -> Any:
@@ -240,7 +240,7 @@ def _is_lost(error: BaseException) -> bool:
 def _measure_all(
     part: Part, base: Profile, samples: list[tuple[dict[str, Value], str]], measures: dict[str, Measure]
 ) -> list[dict[str, Any]]:
-    """What a worker does."""
+    """Makes and measures the plans of a chunk, in a worker."""
     return [_measured(part, base, sample, measures) | {"key": key} for sample, key in samples]
 
 

@@ -90,7 +90,7 @@ fn archive(files: &BTreeMap<String, String>) -> zip::result::ZipResult<Vec<u8>> 
     Ok(archive.finish()?.into_inner())
 }
 
-/// As if a link to the bytes had been clicked.
+/// Downloads the bytes as if a link to them had been clicked.
 fn download(name: &str, bytes: &[u8]) -> Result<(), JsValue> {
     let document = web_sys::window().and_then(|window| window.document()).ok_or("there is no page")?;
     let blob = Blob::new_with_u8_array_sequence(&Array::of1(&Uint8Array::from(bytes)))?;

@@ -17,7 +17,7 @@ impl<T: 'static> Job<T> {
         Self(receiver)
     }
 
-    /// Waits for something of the browser's; the page is drawn again when it is there.
+    /// Waits for an answer of the browser; the page is drawn again when it has come.
     fn wait(ctx: &Context, answer: impl Future<Output = T> + 'static) -> Self {
         let (sender, receiver) = channel();
         let ctx = ctx.clone();
@@ -30,7 +30,7 @@ impl<T: 'static> Job<T> {
     }
 }
 
-/// Asks in the browser's file chooser. Where to write is not asked: what is written is downloaded.
+/// Asks in the browser's file chooser. It does not ask where to write: what is written is downloaded.
 pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<Answer> {
     let dialog = rfd::AsyncFileDialog::new();
     let models = ["stl", "igs", "iges", "bwp"];
@@ -70,7 +70,7 @@ fn answered(ctx: &Context, what: Ask, path: PathBuf) -> Job<Answer> {
     Job::start(ctx, move || Answer { what, path: Some(path), seen: true })
 }
 
-/// Of several files the project, which names its model; else the first.
+/// Of several files, the project, which names its model; otherwise the first.
 fn opened(paths: Vec<PathBuf>) -> Option<PathBuf> {
     let is_project = |path: &&PathBuf| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("bwp"));
     paths.iter().find(is_project).or(paths.first()).cloned()

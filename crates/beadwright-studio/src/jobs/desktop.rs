@@ -19,7 +19,7 @@ impl<T: Send + 'static> Job<T> {
     }
 }
 
-/// Nobody reads and closes a dialog faster than this.
+/// The shortest time in which somebody can read and close a dialog.
 const QUICKEST: Duration = Duration::from_millis(350);
 
 /// Asks in the system's own dialog.

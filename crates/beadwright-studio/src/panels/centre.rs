@@ -37,7 +37,7 @@ pub(super) fn words(known: Known<'_>, label: &'static str) -> Words {
     Words { label: known.t(label), nothing: known.t("nothing-laid"), steps }
 }
 
-/// What the view of a layer is called, what is said of an empty one, and what the steps of strategies are called.
+/// What the view of a layer is called, what an empty one says, and what the steps of strategies are called.
 #[derive(Clone, Copy)]
 pub(super) struct Words {
     pub(super) label: &'static str,

@@ -1,4 +1,4 @@
-//! Two strategies side by side, in layers or in 3-D: where one view goes, the other follows.
+//! Two strategies side by side, in layers or in 3-D: when one view moves, the other follows.
 
 use super::centre::{bar, flat, look_closer, words};
 use super::{bead, solid, totals};
@@ -60,7 +60,7 @@ fn in_layers(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, left: &mu
 /// All layers of both, with one camera.
 fn in_solid(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, left: &mut Ui, right: &mut Ui) {
     let [own, theirs] = ["view-3d-label", "view-3d-other"].map(|key| known.t(key));
-    // A bead of one plan is not one of the other's.
+    // A bead of one plan does not exist in the other.
     let style = known.style(view.state);
     let plain = Style { segments_of_last: None, highlight: None, torch: None, arm: Vec::new(), ..style.clone() };
     solid::picture(known, view, queue, left, &style, own);

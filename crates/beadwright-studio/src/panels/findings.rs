@@ -1,4 +1,4 @@
-//! What the checks found; a click goes there.
+//! What the checks found; a click shows the place.
 
 use super::words;
 use crate::known::{Known, View};
@@ -11,7 +11,7 @@ use eframe::egui::{CollapsingHeader, Color32, Response, RichText, Ui};
 /// Checks about what the deposit model computes.
 const FIGURES: [&str; 4] = ["void", "overfill", "outside", "towers"];
 
-/// Most findings listed for one check.
+/// Maximum number of findings listed for one check.
 const LISTED: usize = 100;
 
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
@@ -98,12 +98,13 @@ fn one(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, finding: &Finding) {
     }
 }
 
-/// The words of a text explained, where its check is about the figures of the deposit: elsewhere they are plain English.
+/// Explains the words of a text, if its check is about the figures of the deposit model: elsewhere they are plain
+/// English.
 fn explained(known: Known<'_>, response: Response, check: &str, text: &str) -> Response {
     if FIGURES.contains(&check) { words::explained(known, response, text) } else { response }
 }
 
-/// Findings that follow each other and differ in their numbers only.
+/// Consecutive findings that differ only in their numbers.
 fn grouped<'a, 'b>(findings: &'b [&'a Finding]) -> Vec<&'b [&'a Finding]> {
     let words = |finding: &Finding| finding.text.replace(|c: char| c.is_ascii_digit() || ".-".contains(c), "");
     findings.chunk_by(|a, b| a.layer.is_some() == b.layer.is_some() && words(a) == words(b)).collect()

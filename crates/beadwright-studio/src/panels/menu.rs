@@ -148,7 +148,7 @@ fn bar(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     }
 }
 
-/// That the plan is complete, and how much the checks found; a click shows it.
+/// Shows that the plan is complete and how much the checks found; a click opens the findings.
 fn done(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
     let count = known.plans.own.findings.as_ref().map_or(0, Vec::len);
     let good = theme::good(ui.visuals().dark_mode);

@@ -45,7 +45,7 @@ pub(crate) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     questions::show(known, view, queue, ui);
 }
 
-/// What is around the view of a part.
+/// The panels around the view of a part.
 fn around(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     if known.plans.own.layer_count() > 0 {
         Panel::bottom("layers").show(ui, |ui| layers::show(known, view, queue, ui));
@@ -63,7 +63,7 @@ fn around(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui)
     Panel::right("side").default_size(330.0).show(ui, |ui| side(known, view, queue, ui));
 }
 
-/// The size of a button with this text, so that the buttons next to it stay where they are when its own text changes.
+/// The size of a button with this text, so that the buttons next to it do not move when its own text changes.
 fn room(ui: &Ui, text: String) -> Vec2 {
     let ink = ui.visuals().text_color();
     let galley = ui.painter().layout_no_wrap(text, TextStyle::Button.resolve(ui.style()), ink);

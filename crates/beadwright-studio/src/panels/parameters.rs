@@ -24,7 +24,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     if ui.checkbox(&mut all, known.t("all-parameters")).changed() {
         queue.push(Action::AllParameters(all));
     }
-    // A search looks at all.
+    // A search covers all parameters.
     let all = all || !view.state.search.is_empty();
     let shown = |key: &str| form::field(key).is_some() && (all || form::BASIC.contains(&key));
     if let Some((key, reason)) = known.open.refused.clone().filter(|(key, _)| !shown(key)) {
@@ -87,7 +87,7 @@ impl Form<'_> {
         self.has_section(key.rsplit_once('.').map_or("", |(section, _)| section))
     }
 
-    /// Whether a field has a text in its key, its meaning, the reason for its range, or a name in either language.
+    /// Whether a text occurs in a field's key, its meaning, the reason for its range, or its name in either language.
     fn says(&self, section: &Section, field: &Field, search: &str) -> bool {
         let name = |(language, _): (Language, _)| {
             let words = [("name", &field.name), ("section", &section.key)];
@@ -200,7 +200,7 @@ fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&
     };
     let (least, greatest) = limit.map_or((f64::MIN, f64::MAX), |l| (l.least, l.greatest));
     let speed = if whole { 0.1 } else { (number.abs() * 0.01).clamp(0.001, 1.0) };
-    // A bracket in the unit says what the range depends on; that belongs in the hint.
+    // A bracket in the unit says what the range depends on, which belongs in the hint.
     let unit = limit.map_or("", |l| unit(l));
     // A typed value is taken once it is complete, and refused with the reason if invalid; dragging stops at the limits.
     let drag = DragValue::new(&mut number).update_while_editing(false).speed(speed).suffix(format!(" {unit}"));

@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3};
 /// Half the side of a handle, points.
 const HANDLE: f32 = 9.0;
 
-/// Drags go in steps of this, mm or °.
+/// Step of a drag, mm or °.
 const STEP: f64 = 0.1;
 
 /// The handles with their names and the colours of their axes.
@@ -22,7 +22,7 @@ const HANDLES: [(Handle, &str, Color32); 3] = [
     (Handle::Turn, "turn-z", Color32::from_rgb(84, 140, 232)),
 ];
 
-/// What the camera shows in a part of the window.
+/// A part of the window with the camera that shows it.
 struct Sight<'a> {
     camera: &'a Camera,
     rect: Rect,
@@ -51,7 +51,7 @@ pub(super) fn switch(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
     }
 }
 
-/// What the tool needs in the picture.
+/// What the tool needs to be in the picture.
 pub(super) fn around(known: Known<'_>, view: &View<'_>) -> Vec<DVec3> {
     let part = known.plans.own.part.as_ref().filter(|_| view.state.placing);
     part.map(|part| Gizmo::around(part.bounds()).ring().collect()).unwrap_or_default()
@@ -81,7 +81,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     }
 }
 
-/// Follows a handle that is dragged; the part goes there once it is let go.
+/// Follows a handle that is dragged; the part moves there once the handle is released.
 fn drag(
     known: Known<'_>,
     view: &mut View<'_>,
@@ -186,7 +186,7 @@ fn draw(painter: &Painter, sight: &Sight<'_>, gizmo: &Gizmo, handle: Handle, col
     }
 }
 
-/// How far the part has been dragged, or what the tool is for.
+/// How far the part has been dragged, or a hint on how to use the tool.
 pub(super) fn moved(known: Known<'_>, view: &View<'_>) -> String {
     match view.state.grip {
         Some(Grip { handle: Handle::Turn, moved, .. }) => format!("{} {:+.1}°", known.t("turn-z"), moved.turn),

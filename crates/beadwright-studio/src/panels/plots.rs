@@ -10,7 +10,7 @@ use beadwright::robot::{Pose, Reach, Stop};
 use eframe::egui::{Color32, Rangef, Response, Ui};
 use egui_plot::{AxisHints, HLine, Legend, Line, LineStyle, Plot, PlotPoints};
 
-/// Most points drawn for a curve.
+/// Maximum number of points drawn for a curve.
 const POINTS: usize = 2000;
 
 /// Spacing of the numbers on an axis in screen points, from barely visible to clear; the plots are small here.
@@ -19,7 +19,7 @@ const SPACING: Rangef = Rangef { min: 25.0, max: 40.0 };
 /// The colours of the positioner's axes.
 const AXES: [Color32; 2] = [Color32::from_rgb(52, 132, 240), Color32::from_rgb(252, 168, 48)];
 
-/// Limits nearer than this to an angle are drawn, °.
+/// Limits no farther than this from an angle are drawn, °.
 const HALF_TURN: f64 = 180.0;
 
 /// Height of a plot, points.

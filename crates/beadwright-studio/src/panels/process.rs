@@ -21,7 +21,7 @@ pub(super) fn profile(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
     combo.response.labelled_by(label.id).on_hover_text(&parsed.profile.description);
 }
 
-/// What the profile of this text says of itself.
+/// The description in the profile of this text.
 fn about(text: &str) -> String {
     Profile::parse(text).map_or_else(|error| error.to_string(), |profile| profile.description)
 }

@@ -6,7 +6,7 @@ use crate::known::{Known, Queue, View};
 use beadwright::program::PositionerAxis;
 use eframe::egui::{TextWrapMode, Ui};
 
-/// The switch that shows the arm; what it needs is computed in the background.
+/// The switch that shows the arm; the poses that it needs are computed in the background.
 pub(super) fn switch(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     let (robot, waits) = (known.t("show-robot"), known.t("show-robot-waits"));
     let ready = known.plans.own.summary.is_some();
@@ -45,7 +45,7 @@ pub(super) fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &
     });
 }
 
-/// The axes of the positioner as they are, and their limits.
+/// The angles of the positioner's axes now, and their limits.
 fn axes(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
     let Some(held) = known.held(view.state) else { return };
     for (number, (axis, angle)) in known.axes().iter().zip(held.angles).enumerate() {

@@ -1,4 +1,4 @@
-//! The scan in 3-D: what its deviation comes to, what its colours mean, and what is doubtful.
+//! The scan in 3-D: figures of its deviation, what its colours mean, and what is doubtful.
 
 use super::solid;
 use crate::actions::Action;

@@ -1,4 +1,4 @@
-//! The section through the 3-D view: its axis, its place, and the side that is cut away.
+//! The section through the 3-D view: its axis, its position, and the side that is cut away.
 
 use crate::known::{Known, View};
 use crate::view3d::Section;
@@ -18,7 +18,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
         }
         for (axis, name) in AXES.into_iter().enumerate() {
             if ui.selectable_label(section.is_some_and(|section| section.axis == axis), name).clicked() {
-                // What is nearer to the viewer goes, so that the section is seen.
+                // The side nearer to the viewer is cut away, so that the section is seen.
                 let lower = view.solid.camera.back()[axis] < 0.0;
                 section = Some(Section { axis, at: (low[axis] + high[axis]) / 2.0, lower });
             }

@@ -41,7 +41,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     place::show(known, view, queue, ui, rect);
 }
 
-/// The picture, with what a click chooses; where it is.
+/// The picture, with what a click chooses; returns where it is.
 pub(super) fn picture(
     known: Known<'_>,
     view: &mut View<'_>,
@@ -158,7 +158,7 @@ fn legend(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
     ui.label(format!("{high:.1}{unit}"));
 }
 
-/// A strip of all colours of a scale, which gives them by their part of it, 0 to 1.
+/// A strip of all colours of a scale; `colour_at` gives the colour at a fraction of it, 0 to 1.
 pub(super) fn scale(ui: &mut Ui, colour_at: impl Fn(f64) -> palette::Rgb) {
     const STEPS: usize = 40;
     let (place, _) = ui.allocate_exact_size(vec2(120.0, 12.0), Sense::hover());

@@ -10,7 +10,7 @@ use eframe::egui::{
     WidgetInfo, pos2, vec2,
 };
 
-/// Most recent files listed.
+/// Maximum number of recent files listed.
 const RECENT: usize = 6;
 
 pub(super) fn show(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {

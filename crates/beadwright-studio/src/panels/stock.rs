@@ -1,4 +1,4 @@
-//! The part within its preform in 3-D, coloured by how much metal is milled off, and what that comes to.
+//! The part within its preform in 3-D, coloured by how much metal is milled off, and the figures of that.
 
 use super::solid;
 use crate::known::{Known, View};

@@ -41,7 +41,7 @@ pub(super) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
     totals.chain(figures.map(rows::deposit).into_iter().flatten()).collect()
 }
 
-/// A row's name, with what it means as a hint.
+/// A row's name, with its meaning as a hint.
 pub(super) fn named(known: Known<'_>, ui: &mut Ui, name: &'static str) {
     words::explained(known, ui.label(name_of(known, name)), name);
 }

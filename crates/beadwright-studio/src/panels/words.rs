@@ -3,7 +3,7 @@
 use crate::known::Known;
 use eframe::egui::Response;
 
-/// Words that have a meaning of their own here.
+/// Words with a special meaning here.
 const WORDS: [&str; 4] = ["void", "low", "overfill", "outside"];
 
 /// The page on figures and findings.

@@ -89,7 +89,7 @@ impl Order {
     /// The order of these bytes.
     ///
     /// # Errors
-    /// A sentence: the bytes are not those of an order.
+    /// A sentence: the bytes are not an order.
     pub fn unpack(bytes: &[u8]) -> Result<Self, String> {
         let (number, project, layer): (u64, String, usize) = of_bytes(bytes)?;
         let project = Project::read(&project, None).map_err(|error| error.to_string())?;
@@ -152,7 +152,7 @@ impl Unpacker {
     /// The event of these bytes, and the number of its order.
     ///
     /// # Errors
-    /// A sentence: the bytes are not those of an event.
+    /// A sentence: the bytes are not an event.
     pub fn unpack(&mut self, bytes: &[u8]) -> Result<(u64, Event), String> {
         let (number, sent) = of_bytes(bytes)?;
         Ok((number, self.event(sent)?))

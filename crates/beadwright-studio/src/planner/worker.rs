@@ -23,7 +23,7 @@ struct Inbox {
     unpacker: Unpacker,
     /// The order in progress.
     number: Option<u64>,
-    /// Whether the worker has ended by a fault.
+    /// Whether a fault has ended the worker.
     dead: bool,
 }
 
@@ -69,7 +69,7 @@ impl Hand {
         worker.ask(&order)
     }
 
-    /// Ends a worker that is at work; one that waits, with all that it has read, is kept.
+    /// Ends a worker that is busy; an idle one is kept, with everything that it has read.
     pub(super) fn stop(&mut self) {
         if self.inbox.borrow_mut().number.take().is_some() {
             self.worker = None;
@@ -132,7 +132,7 @@ impl Worker {
         });
         let (to, bell) = (inbox.clone(), notify.clone());
         let on_error = Closure::new(move |error: PageEvent| {
-            // Only errors of a script that runs say what they are.
+            // Only errors of a script that runs carry a message.
             let reason = Reflect::get(&error, &"message".into()).ok().and_then(|reason| reason.as_string());
             to.borrow_mut().end(reason.as_deref().unwrap_or("worker.js cannot be loaded"));
             bell(super::Urgency::Now);

@@ -7,7 +7,7 @@ use web_sys::Storage;
 /// The name under which the settings are stored.
 const KEY: &str = "beadwright-studio";
 
-/// The local storage of this page's address; nothing is kept where the browser gives none.
+/// The local storage of this page's address; nothing is kept if the browser provides none.
 #[derive(Debug, Default)]
 pub struct Store;
 

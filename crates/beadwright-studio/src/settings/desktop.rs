@@ -6,18 +6,18 @@ use beadwright::files::{FolderError, write_file};
 use std::fs::File;
 use std::path::PathBuf;
 
-/// The folder that holds them; none for a run that leaves no trace. Windows open at the same time share the settings,
-/// but each autosaves its own project: the window that holds the lock of a place owns the project there.
+/// The folder that holds them; `None` for a run that leaves no trace. Windows open at the same time share the settings,
+/// but each autosaves its own project: the window that holds the lock of a slot owns the project there.
 #[derive(Debug, Default)]
 pub struct Store {
     folder: Option<PathBuf>,
-    /// Number of the place where the project is autosaved.
+    /// Number of the slot in which the project is autosaved.
     place: usize,
     /// Open and locked for as long as this run lasts, however it ends.
     _lock: Option<File>,
 }
 
-/// Most windows that can autosave their projects at the same time.
+/// Maximum number of windows that can autosave their projects at the same time.
 const PLACES: usize = 16;
 
 impl Store {
@@ -35,7 +35,7 @@ impl Store {
         let left = |place: &usize| folder.join(format!("autosave-{place}.bwp")).is_file();
         // A folder that cannot be created is reported later, when something is to be saved there.
         let _ = std::fs::create_dir_all(&folder);
-        // First choice: a place where a crashed run has left its project.
+        // First choice: a slot in which a crashed run has left its project.
         let (with, without): (Vec<usize>, Vec<usize>) = (0..PLACES).partition(left);
         let found = with.iter().chain(&without).find_map(lock);
         let (place, lock) = found.map_or((0, None), |(place, lock)| (place, Some(lock)));

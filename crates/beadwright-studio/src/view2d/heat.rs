@@ -26,7 +26,7 @@ pub fn heat(height: f64) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// The height in a pixel, in nominal bead heights; none where there is no metal or a void.
+/// The height in a pixel, in nominal bead heights; `None` where there is no metal, or a void.
 pub fn height(value: u8) -> Option<f64> {
     let step = picture::FULL_SCALE / f64::from(u8::MAX - picture::FIRST_HEIGHT);
     value.checked_sub(picture::FIRST_HEIGHT).map(|v| f64::from(v) * step)

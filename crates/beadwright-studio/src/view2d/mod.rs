@@ -28,7 +28,7 @@ use heat::{VOID, image};
 use pen::Pen;
 use std::sync::Arc;
 
-/// The part of the layer in view: the middle of the view, mm, and its scale, points per mm.
+/// What of the layer is in view: the middle of the view, mm, and its scale, points per mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Eye {
     /// Middle of the view, mm.
@@ -50,7 +50,7 @@ pub struct Show {
     pub starts: bool,
     /// The height field of the deposit model.
     pub heights: bool,
-    /// How the strategy comes to its passes.
+    /// How the strategy arrives at its passes.
     pub regions: bool,
 }
 
@@ -65,7 +65,7 @@ impl Default for Show {
 pub struct Drawing<'a> {
     /// The layer.
     pub layer: &'a Layer,
-    /// Where passes lie that go around an axis more than once.
+    /// The islands around an axis whose passes go around more than once.
     pub bands: Option<&'a Bands>,
     /// What the deposit model says about it.
     pub judgement: Option<&'a Arc<Judgement>>,
@@ -77,7 +77,7 @@ pub struct Drawing<'a> {
     pub chosen: Option<(usize, usize)>,
     /// The caption of the scale of heights, where it is shown.
     pub scale: Option<&'a str>,
-    /// What to say of a layer without passes.
+    /// The text for a layer without passes.
     pub nothing: &'a str,
 }
 
@@ -135,7 +135,7 @@ impl View2d {
         self.eye = other.eye;
     }
 
-    /// The place in view; none while the whole layer is shown.
+    /// The place in view; `None` while the whole layer is shown.
     pub fn eye(&self) -> Option<Eye> {
         self.eye
     }
@@ -228,7 +228,7 @@ impl View2d {
         let size = DVec2::new(map.width as f64, map.height as f64) * map.pixel;
         let place = Rect::from_two_pos(pen.at(map.low), pen.at(map.low + size));
         pen.painter.image(texture.id(), place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
-        // A ring around each void, a little larger than it is.
+        // A ring around each void, slightly larger than the void.
         for void in &judgement.voids {
             let radius = pen.points((void.area / std::f64::consts::PI).sqrt()) + 3.0;
             pen.painter.circle_stroke(pen.at(void.place), radius, Stroke::new(1.5, VOID));
@@ -237,7 +237,7 @@ impl View2d {
 }
 
 impl Drawing<'_> {
-    /// The pieces of a pass, each where it lies on the layer as it is unrolled once.
+    /// The pieces of a pass, each on the layer unrolled once.
     fn pieces<'p>(&'p self, pass: &'p Pass) -> impl Iterator<Item = Segment> + 'p {
         pass.segments().map(|piece| self.bands.map_or(piece, |bands| bands.piece(piece)))
     }

@@ -35,8 +35,8 @@ impl Pen<'_> {
         (length * self.eye.scale) as f32
     }
 
-    /// A closed line. It is drawn as an open one that ends where it began: only at the corners of those are mitres
-    /// limited, and the sharp corners of slivers would become spikes across the view.
+    /// A closed line, drawn as an open one that ends where it began: only those have limited mitres at their corners,
+    /// and the sharp corners of slivers would otherwise become spikes across the view.
     pub(super) fn ring(&self, points: &[DVec2], stroke: Stroke) {
         /// Points closer than this on the screen are one: they have no direction.
         const SAME: f32 = 0.2;

@@ -1,7 +1,7 @@
 //! One layer as it is drawn and timed: its segments in print order, the passes, and the travels between them.
 //!
-//! This is plain data, made on a worker thread. Numbers that only the picture needs are `f32`. Layers that are not level are
-//! where they lie in space: their pieces are divided into segments that follow them.
+//! This is plain data, made on a worker thread. Numbers that only the picture needs are `f32`. Layers that are not
+//! level are placed in space: their pieces are divided into segments that follow them.
 
 use super::lie::{Lie, Stance, packed, unpacked};
 use beadwright::layer::Layer;
@@ -65,7 +65,7 @@ impl Bead {
         self.height.abs()
     }
 
-    /// The direction out of its layer, of length 1: along it the bead is as high as it is.
+    /// The direction out of its layer, of length 1, along which its height is measured.
     pub fn up(&self) -> Vec3 {
         unpacked(self.up)
     }
@@ -81,7 +81,7 @@ impl Bead {
         [self.from() - below, self.to() - below]
     }
 
-    /// How far it reaches from that line along x, y and z, mm.
+    /// How far it reaches from its middle line along x, y and z, mm.
     fn reach(&self) -> Vec3 {
         let (across, high) = (self.width() / 2.0, self.height() / 2.0);
         if self.up == 0 {
@@ -91,7 +91,7 @@ impl Bead {
         (across * across * (Vec3::ONE - part) + high * high * part).map(|square| square.max(0.0).sqrt())
     }
 
-    /// The round end of it at one of its ends.
+    /// The round end of the bead at one of its ends.
     fn cap(&self, at: [f32; 3]) -> Cap {
         Cap { at, width: self.width(), height: self.height(), up: self.up }
     }
@@ -104,7 +104,7 @@ pub(super) struct Cap {
     pub at: [f32; 3],
     pub width: f32,
     pub height: f32,
-    /// As of a bead.
+    /// Packed, as for a bead.
     pub up: u32,
 }
 
@@ -123,7 +123,7 @@ pub struct PassSpan {
     pub arrival: f64,
     /// When the torch begins to move with the arc on.
     pub arc_start: f64,
-    /// When the torch may leave.
+    /// When the torch may leave: after crater filling and gas.
     pub end: f64,
     /// The travel to it: from where the torch was, up, across, down; empty before the very first pass.
     pub travel: Vec<Stance>,
@@ -137,13 +137,13 @@ pub struct LayerBeads {
     pub(super) speeds: Vec<f32>,
     /// When each segment ends, s from the start of the layer.
     pub(super) ends: Vec<f32>,
-    /// The piece of the layer that each segment is part of; empty where each is a whole piece.
+    /// The piece of the layer that each segment is part of; empty where each segment is a whole piece.
     pieces: Vec<u32>,
     pub(super) passes: Vec<PassSpan>,
     pub(super) caps: Vec<Cap>,
     /// The segment with which each cap appears.
     pub(super) cap_segments: Vec<u32>,
-    /// The same beads with fewer segments, for a view in motion.
+    /// The same beads in fewer segments, for a view in motion.
     pub(super) rough: Vec<Bead>,
     /// The last segment that each rough one stands for.
     pub(super) rough_segments: Vec<u32>,
@@ -154,7 +154,7 @@ pub struct LayerBeads {
 
 static NEXT_ID: AtomicU64 = AtomicU64::new(1);
 
-/// A number that no other caller gets; comparing it shows whether something changed.
+/// A number that no other caller gets; a different one shows that something has changed.
 pub(super) fn fresh_id() -> u64 {
     NEXT_ID.fetch_add(1, Ordering::Relaxed)
 }
@@ -177,7 +177,7 @@ impl LayerBeads {
             boxes: Vec::new(),
             seconds: 0.0,
         };
-        // Up from the layer before, as it lies.
+        // The rise at the end of the layer before, in that layer's lie.
         let begins = layer.passes.first().is_some_and(|pass| pass.start().is_some());
         let before = torch.at().filter(|_| begins).map(|at| Lie(torch.sheet()).stance(at));
         let up = if begins { torch.retract() } else { Way::default() };
@@ -387,7 +387,7 @@ impl LayerBeads {
 }
 
 impl PassSpan {
-    /// Adds the way from the layer before: up, which takes `rising` s, and to another body where it leads to one.
+    /// Adds the way from the layer before: the rise, which takes `rising` s, and the transfer if another body follows.
     fn comes_from(&mut self, from: Stance, rising: f64, transfer: Option<&Transfer>) {
         let legs = transfer.iter().flat_map(|way| &way.legs).map(|leg| Stance { at: leg.place, up: leg.normal });
         self.travel.splice(0..0, std::iter::once(from).chain(legs));
@@ -395,7 +395,7 @@ impl PassSpan {
     }
 }
 
-/// Whether consecutive beads together are nearly one straight bead.
+/// Whether consecutive beads together form nearly one straight bead.
 fn merges(beads: &[Bead]) -> bool {
     let [first, between @ .., last] = beads else { return true };
     let (start, way) = (first.from(), (last.to() - first.from()).normalize_or_zero());

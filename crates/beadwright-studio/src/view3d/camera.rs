@@ -1,7 +1,7 @@
 //! Where the eye is. The camera turns about a target, with z up.
 //!
-//! What is seen may be held otherwise than it lies, by a positioner. The eye stays where it is in the cell then; all that is asked
-//! of the camera is answered in the space of what is seen.
+//! A positioner may hold what is seen in another position than it lies in. The eye then stays where it is in the cell;
+//! all answers of the camera are in the coordinates of what is seen.
 
 use beadwright::robot::Frame;
 use glam::{DMat4, DVec2, DVec3};
@@ -45,7 +45,7 @@ pub struct Camera {
     pub pitch: f64,
     /// Whether the projection is parallel.
     pub orthographic: bool,
-    /// How what is seen is held in the cell.
+    /// How what is seen is held in the cell: its frame.
     pub held: Frame,
 }
 
@@ -80,7 +80,7 @@ impl Camera {
         self.seen(DVec3::Z)
     }
 
-    /// A direction of the cell.
+    /// A direction of the cell in the coordinates of what is seen.
     fn seen(&self, way: DVec3) -> DVec3 {
         self.held.rotation.conjugate() * way
     }
@@ -106,7 +106,7 @@ impl Camera {
         let near = self.distance / 100.0;
         let view = DMat4::look_to_rh(self.eye(), -self.back(), self.up());
         if self.orthographic {
-            // As deep behind the eye as in front of it, so that nothing is cut off.
+            // As deep behind the eye as in front of it, so that nothing is clipped.
             let (half, reach) = (self.height() / 2.0, 100.0 * self.distance + 4.0 * self.target.length());
             return DMat4::orthographic_rh(-half * aspect, half * aspect, -half, half, reach, -reach) * view;
         }
@@ -142,14 +142,14 @@ impl Camera {
         self.middle() + self.right() * x + self.up() * y
     }
 
-    /// Turns about the target, following a drag by that many points.
+    /// Turns about the target, following a drag by this many points.
     pub fn orbit(&mut self, drag: DVec2) {
         const UPRIGHT: f64 = std::f64::consts::FRAC_PI_2;
         self.yaw = (self.yaw - drag.x * TURN_PER_POINT).rem_euclid(std::f64::consts::TAU);
         self.pitch = (self.pitch + drag.y * TURN_PER_POINT).clamp(-UPRIGHT, UPRIGHT);
     }
 
-    /// Moves so that the target follows a drag by that many points.
+    /// Moves so that the target follows a drag by this many points.
     pub fn pan(&mut self, drag: DVec2, size: DVec2) {
         let scale = self.height() / size.y;
         self.target += self.held.rotation * ((self.up() * drag.y - self.right() * drag.x) * scale);

@@ -3,7 +3,7 @@
 use beadwright::model::Mesh;
 use glam::DVec3;
 
-/// The outward normal of the nearest face of a mesh on a ray; none where the ray misses.
+/// The outward normal of the nearest face of a mesh on a ray; `None` if the ray misses.
 pub fn face(mesh: &Mesh, (origin, way): (DVec3, DVec3)) -> Option<DVec3> {
     let hits = mesh.triangles.iter().filter_map(|triangle| {
         let [a, b, c] = triangle.map(|i| mesh.vertices.get(i as usize).copied().unwrap_or_default());

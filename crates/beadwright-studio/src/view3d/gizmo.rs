@@ -3,10 +3,10 @@
 use super::camera::Camera;
 use glam::{DVec2, DVec3};
 
-/// Axes seen more steeply than this (cosine to the line of sight) are not followed: a pixel would be many mm.
+/// Axes nearer to the line of sight than this (cosine of the angle to it) cannot be dragged: a pixel would be many mm.
 const STEEPEST: f64 = 0.97;
 
-/// Planes seen flatter than this (sine of the line of sight to them) are not followed.
+/// Planes seen at a flatter angle than this (sine of the line of sight to them) cannot be dragged on.
 const FLATTEST: f64 = 0.1;
 
 /// A handle.
@@ -47,7 +47,7 @@ pub struct Grip {
     pub handle: Handle,
     /// Where it was grabbed in the picture, points.
     pub from: DVec2,
-    /// What it has done so far.
+    /// The motion so far.
     pub moved: Moved,
 }
 
@@ -64,7 +64,7 @@ impl Handle {
         }
     }
 
-    /// What it does by an amount, mm or °.
+    /// The motion by an amount, mm or °.
     pub fn by(self, amount: f64) -> Moved {
         match self {
             Self::X | Self::Y => Moved { shift: self.axis().truncate() * amount, turn: 0.0 },
@@ -94,14 +94,14 @@ impl Gizmo {
         Self { foot: self.foot + moved.shift.extend(0.0), turn: self.turn + moved.turn, ..*self }
     }
 
-    /// Places around the foot at the distance of the handles, mm; the first is met again at the end.
+    /// Places around the foot at the distance of the handles, mm; the last is the first again.
     pub fn ring(&self) -> impl Iterator<Item = DVec3> {
         const PIECES: u32 = 72;
         let angles = (0..=PIECES).map(|i| std::f64::consts::TAU * f64::from(i) / f64::from(PIECES));
         angles.map(|angle| self.foot + (DVec2::from_angle(angle) * self.reach).extend(0.0))
     }
 
-    /// Whether a handle can be dragged from where the camera is.
+    /// Whether a handle can be dragged with the camera where it is.
     pub fn can(&self, handle: Handle, camera: &Camera) -> bool {
         let tip = self.tip(handle);
         let way = if camera.orthographic { camera.back() } else { (camera.eye() - tip).normalize_or(camera.back()) };
@@ -111,8 +111,8 @@ impl Gizmo {
         }
     }
 
-    /// What a handle does when it is dragged from one line of sight to another (origin and direction); none where they say
-    /// nothing.
+    /// The motion of a handle dragged from one line of sight to another (origin and direction); `None` where they do
+    /// not determine it.
     pub fn dragged(&self, handle: Handle, from: (DVec3, DVec3), to: (DVec3, DVec3)) -> Option<Moved> {
         let amount = match handle {
             Handle::Turn => {

@@ -16,12 +16,12 @@ pub struct Stance {
 }
 
 impl Stance {
-    /// That of a torch which points straight down.
+    /// The attitude of a torch that points straight down.
     pub fn upright(at: DVec3) -> Self {
         Self { at, up: DVec3::Z }
     }
 
-    /// The one at a fraction (0 to 1) of the way to another.
+    /// The attitude at a fraction `part` (0 to 1) of the way to another.
     pub(super) fn towards(self, to: Self, part: f64) -> Self {
         let up = if self.up == to.up { self.up } else { self.up.lerp(to.up, part).normalize_or(self.up) };
         Self { at: self.at.lerp(to.at, part), up }
@@ -43,7 +43,8 @@ impl Lie<'_> {
         self.0.map(on_sheet).map_or(Stance::upright(p), |at| Stance { at: at.place, up: at.normal })
     }
 
-    /// How far it is to what lies `height` (mm) below a point of the layer, along the direction out of it, mm.
+    /// Distance from a point of the layer to the surface that lies `height` (mm) below it, along the direction out of
+    /// it, mm.
     pub(super) fn thickness(&self, p: DVec3, height: f64) -> f64 {
         if self.is_level() {
             return height;
@@ -52,7 +53,8 @@ impl Lie<'_> {
         (top.at - below.at).dot(top.up).max(0.0)
     }
 
-    /// Points from one to another, without the first, so close together that straight pieces between them follow the layer.
+    /// Points from one to another, without the first, close enough together that the straight pieces between them
+    /// follow the layer.
     pub(super) fn divided(&self, from: DVec3, to: DVec3) -> impl Iterator<Item = DVec3> + use<> {
         let (tolerance, angle) = FINE;
         let whole = self.is_level().then_some(to);
@@ -88,7 +90,7 @@ pub(super) fn unpacked(up: u32) -> Vec3 {
     Vec3::new(flat.x - back.copysign(flat.x), flat.y - back.copysign(flat.y), z).normalize()
 }
 
-/// What stands for 1 in 16 bits.
+/// The value of 1 in 16 bits.
 const LARGEST: f64 = 32767.0;
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ pub struct Pick {
 struct Ray {
     origin: Vec3,
     way: Vec3,
-    /// The part of it that no section cuts away, mm.
+    /// The stretch of the ray that no section cuts away, mm.
     kept: (f32, f32),
 }
 
@@ -57,7 +57,7 @@ pub fn pick(scene: &Scene, style: &Style, camera: &Camera, size: DVec2, at: DVec
     best.and_then(|(_, layer, segment)| Some(Pick { layer, pass: scene.layer(layer)?.pass_of(segment), segment }))
 }
 
-/// The nearest of the first `shown` segments of a layer, and how far it is, mm.
+/// The nearest of the first `shown` segments of a layer, and its distance, mm.
 fn nearest(layer: &LayerBeads, shown: usize, ray: &Ray) -> Option<(f32, usize)> {
     let mut best: Option<(f32, usize)> = None;
     for (block, &bounds) in layer.boxes.iter().enumerate().take(shown.div_ceil(BLOCK)) {
@@ -78,7 +78,7 @@ fn nearest(layer: &LayerBeads, shown: usize, ray: &Ray) -> Option<(f32, usize)> 
 }
 
 impl Ray {
-    /// Distance at which it enters a box, mm; `None` if it misses.
+    /// Distance at which the ray enters a box, mm; `None` if it misses.
     fn enters(&self, (low, high): (Vec3, Vec3)) -> Option<f32> {
         let (mut first, mut last) = self.kept;
         for axis in 0..3 {
@@ -96,12 +96,12 @@ impl Ray {
         (first <= last).then_some(first)
     }
 
-    /// Distance at which it enters a bead, mm; `None` if it misses.
+    /// Distance at which the ray enters a bead, mm; `None` if it misses.
     fn hits(&self, bead: &Bead) -> Option<f32> {
         let (width, height) = (bead.width(), bead.height());
         let (up, more) = (bead.up(), if height > 0.0 { width / height - 1.0 } else { 0.0 });
         let stretched = |v: Vec3| v + up * (more * up.dot(v));
-        // Starts near the bead: with a distant eye, f32 would lose digits.
+        // Starts near the bead, since with a distant eye f32 would lose digits.
         let near = (bead.from() - self.origin).dot(self.way);
         let origin = self.origin + self.way * near;
         let [a, b] = bead.middle_line().map(|end| stretched(end - origin));

@@ -3,26 +3,26 @@
 use beadwright::model::Milled;
 use glam::DVec3;
 
-/// Part of the points whose deviation the colours show; those beyond have the colour of the end, so that a little spatter
-/// does not take the colours away from the rest.
+/// Fraction of the points whose deviation the colours resolve; those beyond get the colour at the end, so that a little
+/// spatter does not use up the colours.
 const SHARE: f64 = 0.99;
 
-/// The least deviation at an end of the colours, mm.
+/// The smallest deviation that an end of the colours stands for, mm.
 const FINEST_MM: f64 = 0.01;
 
 /// A scan, with how far each of its points lies from the part.
 #[derive(Debug)]
 pub struct Scanned {
-    /// x, y, z, mm, and the place in the colour map, 0 to 1: the middle lies on the surface.
+    /// x, y, z, mm, and the position in the colour map, 0 to 1; 0.5 lies on the surface.
     pub(super) points: Vec<[f32; 4]>,
-    /// Triangles between them; none of a cloud of points.
+    /// Triangles between them; empty for a cloud of points.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The deviation at the ends of the colours, mm.
+    /// The deviation that the ends of the colours stand for, mm.
     range: f64,
 }
 
 impl Scanned {
-    /// None without points. `distances` are those of the points, mm.
+    /// `None` without points. `distances` are those of the points from the part, mm.
     pub fn new(points: &[DVec3], triangles: &[[u32; 3]], distances: &[f64]) -> Option<Self> {
         let mut far: Vec<f64> = distances.iter().map(|distance| distance.abs()).collect();
         let index = (SHARE * far.len().checked_sub(1)? as f64).round() as usize;
@@ -46,7 +46,7 @@ impl Scanned {
         Self::new(&points, &triangles, &over)
     }
 
-    /// The deviation at the ends of the colours, mm.
+    /// The deviation that the ends of the colours stand for, mm.
     pub fn range(&self) -> f64 {
         self.range
     }

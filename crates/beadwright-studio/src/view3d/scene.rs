@@ -21,7 +21,7 @@ pub struct Scene {
     mesh: Option<Arc<Mesh>>,
     layers: Vec<Option<Arc<LayerBeads>>>,
     values: Vec<Option<Values>>,
-    /// By pass, where the plan does not have them.
+    /// By pass, if the plan itself has none.
     temperatures: Vec<Option<Values>>,
     /// By segment.
     leans: Vec<Option<Values>>,
@@ -51,7 +51,7 @@ pub struct Position {
     pub torch: Stance,
     /// Whether the arc is on.
     pub arc: bool,
-    /// How much of the way to the pass is behind it, 0 to 1; none once it is there.
+    /// Fraction of the travel to the pass that is done, 0 to 1; `None` once the torch is there.
     pub come: Option<f64>,
 }
 
@@ -83,7 +83,7 @@ impl Scene {
         (self.version, self.scan_version) = (fresh_id(), fresh_id());
     }
 
-    /// Sets the layer with that index; layers may come in any order.
+    /// Sets the layer with this index; layers may come in any order.
     pub fn set_layer(&mut self, index: usize, beads: Arc<LayerBeads>) {
         let count = self.layers.len().max(index + 1);
         self.layers.resize(count, None);
@@ -134,12 +134,12 @@ impl Scene {
         &self.layers
     }
 
-    /// The layer with that index.
+    /// The layer with this index.
     pub fn layer(&self, index: usize) -> Option<&Arc<LayerBeads>> {
         self.layers.get(index)?.as_ref()
     }
 
-    /// The layers that are there, with their indices.
+    /// The layers that have come, with their indices.
     pub(super) fn present(&self) -> impl DoubleEndedIterator<Item = (usize, &Arc<LayerBeads>)> {
         self.layers.iter().enumerate().filter_map(|(i, layer)| Some((i, layer.as_ref()?)))
     }
@@ -176,7 +176,7 @@ impl Scene {
         mesh.into_iter().chain(beads).reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
     }
 
-    /// Corners of an upright 16-sided prism around model and beads, mm: what the camera must get into the picture.
+    /// Corners of an upright 16-sided prism around model and beads, mm: the camera must get them into the picture.
     pub fn outline(&self) -> Vec<DVec3> {
         let Some((low, high)) = self.bounds() else { return Vec::new() };
         let mut reach = [f64::NEG_INFINITY; SIDES];
@@ -235,7 +235,7 @@ impl Scene {
         self.present().take_while(|(i, _)| *i < layer).map(|(_, beads)| beads.seconds()).sum()
     }
 
-    /// Where the torch is after that many seconds; beyond the total time, at the end of the last layer.
+    /// Where the torch is after this many seconds; beyond the total time, at the end of the last layer.
     pub fn at_time(&self, seconds: f64) -> Option<Position> {
         let mut left = seconds.max(0.0);
         let last = self.present().rfind(|(_, layer)| !layer.is_empty())?.0;
@@ -248,7 +248,7 @@ impl Scene {
         None
     }
 
-    /// The range of all layers together, from that of each.
+    /// The range of all layers together, from the range of each.
     fn range(&self, of: fn(&LayerBeads) -> (f32, f32)) -> Option<(f64, f64)> {
         let ranges = self.present().filter(|(_, layer)| !layer.is_empty()).map(|(_, layer)| of(layer));
         let range = ranges.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));

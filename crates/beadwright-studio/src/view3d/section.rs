@@ -1,4 +1,4 @@
-//! A plane that cuts away what lies on one side of it, so that one sees inside.
+//! A plane that cuts away what lies on one side of it, to show the inside.
 
 use glam::DVec3;
 
@@ -7,9 +7,9 @@ use glam::DVec3;
 pub struct Section {
     /// The axis: 0 x, 1 y, 2 z.
     pub axis: usize,
-    /// Its place on the axis, mm.
+    /// Its position on the axis, mm.
     pub at: f64,
-    /// Whether the side of the smaller coordinates is cut away; that of the greater ones otherwise.
+    /// Whether the side of the smaller coordinates is cut away, and not that of the greater ones.
     pub lower: bool,
 }
 
@@ -21,7 +21,8 @@ impl Section {
         (normal, self.at * sign)
     }
 
-    /// Where a ray is on the side that is kept: from and to this multiple of its direction; none where it never is.
+    /// The stretch of a ray on the side that is kept: from and to this multiple of its direction; `None` if it never
+    /// is.
     pub fn kept(&self, origin: DVec3, way: DVec3) -> Option<(f64, f64)> {
         let (normal, offset) = self.plane();
         let (ahead, room) = (normal.dot(way), offset - normal.dot(origin));

@@ -59,7 +59,7 @@ pub struct Style {
     pub beads: bool,
     /// The layers shown, from 0.
     pub layers: RangeInclusive<usize>,
-    /// How many segments of the last of those layers are shown; all where `None`.
+    /// How many segments of the last of those layers are shown; `None` for all.
     pub segments_of_last: Option<usize>,
     /// A plane that cuts away what lies beyond it.
     pub section: Option<Section>,

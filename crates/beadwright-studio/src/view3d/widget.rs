@@ -15,16 +15,16 @@ use web_time::Instant;
 /// The picture stays coarse this long after the last turn of the mouse wheel, s.
 const SETTLE: f64 = 0.2;
 
-/// Scenes with more segments are drawn coarsely while they move: with a graphics card, without one.
+/// Number of segments beyond which scenes are drawn coarsely while they move: with a graphics card, without one.
 const COARSE_FROM: [usize; 2] = [1_500_000, 12_000];
 
-/// Rough segments that are drawn in a twentieth of a second: with a graphics card, without one.
+/// Number of rough segments that can be drawn in a twentieth of a second: with a graphics card, without one.
 const IN_TIME: [usize; 2] = [1_500_000, 20_000];
 
 /// At least this many layers of a part are drawn while it moves.
 const LEAST_LAYERS: usize = 8;
 
-/// Scenes with fewer segments get four samples per pixel even without a graphics card, once they are still.
+/// Scenes with fewer segments than this get four samples per pixel even without a graphics card, once they are still.
 const SMOOTH_BELOW: usize = 60_000;
 
 /// From this many segments on, a bead under the pointer is only identified when it is clicked.
@@ -35,7 +35,7 @@ const HOVER_BELOW: usize = 400_000;
 pub struct Shown {
     /// The segment that was clicked.
     pub picked: Option<Pick>,
-    /// The line of sight through the click: from where, and its direction.
+    /// The line of sight through the click: its origin and its direction.
     pub sight: Option<(DVec3, DVec3)>,
     /// Whether the view was clicked, on a bead or not.
     pub clicked: bool,
@@ -47,7 +47,7 @@ pub struct Shown {
     pub response: egui::Response,
 }
 
-/// How long it took to make a picture, s.
+/// Time that a picture took, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Timing {
     /// Sending what changed.
@@ -310,7 +310,7 @@ fn rough_error(scene: &Scene) -> f64 {
     bead.map_or(0.0, |bead| f64::from(ROUGH * bead.width()))
 }
 
-/// While it moves, one layer stands for several as soon as there are more rough `segments` than can be drawn in time.
+/// While the view moves, one layer stands for several once there are more rough `segments` than can be drawn in time.
 fn coarse_quality(software: bool, (layers, segments): (usize, usize)) -> Quality {
     let every = segments.div_ceil(IN_TIME[usize::from(software)]).clamp(1, (layers / LEAST_LAYERS).max(1));
     Quality { strips: 2, samples: 1, exact: false, caps: every == 1, every }

@@ -1,9 +1,9 @@
 //! Aligns a scan with the part: by the plate, and by the outline of the part.
 //!
-//! The height comes from the plate alone: a fit of the top would remove the very error that is sought. In the plane,
-//! raised points belong inside the outline of the layers above half the height, points of the plate outside that of
-//! all layers. Least squares over the distances of those that do not (Gauss and Newton's steps, damped), from several
-//! starts, give shift and turn.
+//! The height comes from the plate alone: fitting the top would remove the very error that is sought. In plan view,
+//! raised points belong inside the outline of the layers above half the height, and points of the plate outside the
+//! outline of all layers. From several starts, damped Gauss–Newton steps minimise the squared distances of the points
+//! that are on the wrong side, which gives shift and turn.
 
 use crate::layer::Layer;
 use glam::{DMat3, DVec2, DVec3};
@@ -12,7 +12,7 @@ use planar::{Region, polyline};
 /// How a scan is aligned with the part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Align {
-    /// Its coordinates are those of the part.
+    /// Not moved: its coordinates are already those of the part.
     #[default]
     AsIs,
     /// The plate gives the height.
@@ -28,11 +28,12 @@ pub struct Aligned {
     pub points: Vec<DVec3>,
     /// How far the middle of the scan was moved, mm.
     pub shift: DVec3,
-    /// By how much it was turned about the vertical through its middle, radians.
+    /// Rotation about the vertical through its middle, radians.
     pub turn: f64,
     /// Whether the scan shows the plate.
     pub plate: bool,
-    /// Part of the points, 0 to 1, that lie more than half a bead on the wrong side of the outline; 0 without a fit.
+    /// Fraction of the points, 0 to 1, that lie more than half a bead on the wrong side of the outline; 0 without a
+    /// fit.
     pub astray: f64,
 }
 
@@ -46,7 +47,7 @@ pub enum AlignError {
          {height:.2} mm high. Scan a strip of the plate next to the part as well, or give z as the height above the plate."
     )]
     NoPlate {
-        /// Distance of its lowest from its highest points, mm.
+        /// Height from its lowest to its highest points, mm.
         range: f64,
         /// Planned height of the build, mm.
         height: f64,
@@ -57,32 +58,32 @@ pub enum AlignError {
          side of it; at most {most:.0} % may be. Is it a scan of this part?"
     )]
     NoFit {
-        /// Part of the points, %.
+        /// Share of the points that are astray, %.
         percent: f64,
-        /// Greatest part that is accepted, %.
+        /// Greatest share that is accepted, %.
         most: f64,
     },
 }
 
-/// Part of the points that may stay on the wrong side of the outline.
+/// Fraction of the points that may be more than half a bead on the wrong side of the outline.
 const ASTRAY: f64 = 0.1;
-/// Points keep this distance from the outline, in bead widths: it centres a scan that has room to move.
+/// Points are kept this far from the outline, in bead widths, which centres a scan that has play.
 const MARGIN: f64 = 0.125;
 /// Once a scan is nearly aligned, points within this many margins of the outline are considered.
 const NEAR: f64 = 16.0;
-/// Parts of the points that may lie below the plate and above the top, as noise.
+/// Fractions of the points at the bottom and at the top that are taken for noise.
 const NOISE: f64 = 0.02;
-/// Points up to this part of the range above the lowest one show the plate.
+/// Points within this fraction of the range above the lowest one show the plate.
 const PLATE: f64 = 0.1;
-/// A scan whose points range over less than this part of the height shows no plate.
+/// A scan whose heights range over less than this fraction of the build's height shows no plate.
 const SEES_PLATE: f64 = 0.5;
-/// Points for the search of a start, and for the fit.
+/// Number of points used to find a start, and for the fit.
 const POINTS: (usize, usize) = (300, 3000);
 /// Turns from which a fit begins, °.
 const TURNS: [f64; 7] = [0.0, -10.0, 10.0, -20.0, 20.0, -30.0, 30.0];
-/// Turned farther, a symmetric part would fit as well another way round, radians (45°).
+/// Largest turn, radians (45°): beyond it a symmetric part would fit just as well another way round.
 const MOST_TURN: f64 = std::f64::consts::FRAC_PI_4;
-/// Another start must leave less than this part of what an earlier one leaves.
+/// A later start is preferred only if what it leaves is below this fraction of what the best one so far leaves.
 const BETTER: f64 = 0.8;
 /// Maximum number of steps of a fit, and the step that ends it, mm.
 const STEPS: usize = 100;
@@ -125,7 +126,8 @@ impl Aligned {
 
     fn fit(&mut self, built: &[Layer], floor: f64, height: f64, width: f64) {
         let middle = floor + height / 2.0;
-        // Without a plate the height is not known: all points count as raised. Points of the sides belong nowhere.
+        // Without a plate the height is not known, so all points count as raised. With one, points in between are
+        // ignored.
         let stands = |p: &&DVec3| !self.plate || p.z > middle;
         let lies = |p: &&DVec3| self.plate && p.z < floor + PLATE * height;
         let points =
@@ -142,12 +144,12 @@ impl Aligned {
     }
 }
 
-/// What the layers that end above a height (mm) cover, seen from above.
+/// The area covered by the layers that end above a height (mm), seen from above.
 fn shadow(built: &[Layer], above: f64) -> Region {
     let (mut sum, mut before) = (Region::EMPTY, Region::EMPTY);
     for layer in built.iter().filter(|layer| layer.z >= above) {
         let next = Region::from_normalised(layer.islands.clone());
-        // The layers of straight walls repeat each other.
+        // Layers of straight walls are alike.
         if next.polygons() != before.polygons() {
             sum = sum.union(&next);
             before = next;
@@ -188,13 +190,13 @@ impl Side {
         self.points.iter().step_by(self.points.len().div_ceil(most).max(1))
     }
 
-    /// The points that lie up to `reach` (mm) from the outline, as they are moved, or on the wrong side.
+    /// The points that, once moved, lie on the wrong side or within `reach` (mm) of the outline.
     fn near(&self, motion: &Motion, reach: f64) -> Self {
         let near = |p: &&DVec2| self.outline.beyond(motion.of(**p), self.inside).is_some_and(|(by, _)| by > -reach);
         Self { points: self.points.iter().filter(near).copied().collect(), ..self.clone() }
     }
 
-    /// Part of the points that lie more than `far` (mm) on the wrong side, as they are moved.
+    /// Fraction of the points that, once moved, lie more than `far` (mm) on the wrong side.
     fn astray(&self, motion: &Motion, far: f64) -> f64 {
         let out = |p: &&DVec2| self.outline.beyond(motion.of(**p), self.inside).is_some_and(|(by, _)| by > far);
         let (count, out) = (self.some(POINTS.1).count(), self.some(POINTS.1).filter(out).count());
@@ -215,8 +217,8 @@ impl Outline {
         Self { region, edges }
     }
 
-    /// How far a point lies on the wrong side, mm, negative on the right one; and the direction in which it goes further
-    /// wrong.
+    /// How far a point lies on the wrong side, mm (negative on the right side), and the direction in which this
+    /// distance grows.
     fn beyond(&self, p: DVec2, inside: bool) -> Option<(f64, DVec2)> {
         let to_edge = |&(a, b): &(DVec2, DVec2)| p - polyline::closest_on_segment(p, a, b);
         let way = self.edges.iter().map(to_edge).min_by(|a, b| a.length_squared().total_cmp(&b.length_squared()))?;
@@ -260,7 +262,7 @@ fn best(sides: &[Side; 2], margin: f64) -> Motion {
     fitted(&[near(&sides[0]), near(&sides[1])], start, margin, POINTS.1).0
 }
 
-/// The fit from one start, by about `most` points of each side; and the mean square of the distances that it leaves, mm².
+/// The fit from one start with about `most` points of each side, and the mean square of the remaining distances, mm².
 fn fitted(sides: &[Side; 2], mut motion: Motion, margin: f64, most: usize) -> (Motion, f64) {
     let mut left = 0.0;
     for _ in 0..STEPS {

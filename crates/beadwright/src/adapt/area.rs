@@ -4,14 +4,15 @@ use crate::deposit::RIM;
 use crate::deposit::field::Grid;
 use planar::{Join, Polygon, Region};
 
-/// The points inside the outlines less a rim of a quarter of a bead `width` (mm); all of them where nothing would be left.
+/// The grid points inside the outlines less a rim of a quarter of a bead `width` (mm), or all inside if none would be
+/// left.
 pub fn core(grid: &Grid, islands: &[Polygon], width: f64) -> Vec<usize> {
     let whole = Region::from_normalised(islands.to_vec());
     let core = inside(grid, &whole.offset(-RIM * width, Join::ROUND));
     if core.is_empty() { inside(grid, &whole) } else { core }
 }
 
-/// The points within `reach` (mm) of the outlines or inside.
+/// The grid points inside the outlines or within `reach` (mm) of them.
 pub(super) fn near(grid: &Grid, islands: &[Polygon], reach: f64) -> Vec<usize> {
     inside(grid, &Region::from_normalised(islands.to_vec()).offset(reach, Join::ROUND))
 }

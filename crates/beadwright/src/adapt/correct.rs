@@ -1,4 +1,4 @@
-//! The next layer, corrected for what was measured: how much metal goes where, and at which height the torch runs.
+//! The next layer, corrected by what was measured: how much metal goes where, and at what height the torch runs.
 
 use super::levels::{Levels, Rung};
 use super::surface::Surface;
@@ -21,7 +21,7 @@ pub enum Feedback {
 /// How far a correction may go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rules {
-    /// Least and greatest metal per length, as multiples of the planned one.
+    /// Least and greatest metal per length, as multiples of the planned metal.
     pub window: (f64, f64),
     /// Metal and height change at points this far apart, mm.
     pub spacing: f64,
@@ -30,19 +30,20 @@ pub struct Rules {
 /// The next layer.
 #[derive(Debug, Clone)]
 pub(crate) struct Next {
-    /// What it should add, the same everywhere: the planned passes with the metal of its thickness.
+    /// What it should add, the same everywhere: the planned passes, with metal for its thickness.
     pub promised: Layer,
     /// What is welded.
     pub layer: Layer,
-    /// Least and greatest metal of its passes, as multiples of the planned one.
+    /// Least and greatest metal of its passes, as multiples of the planned metal.
     pub metal: (f64, f64),
-    /// Pieces of its passes.
+    /// Number of pieces in its passes.
     pub pieces: usize,
-    /// Those that need more or less metal than the window allows.
+    /// Number of pieces that need more or less metal than the window allows.
     pub clipped: usize,
 }
 
-/// The next layer on a surface whose level is its mean height; `None` where the part is complete. Its index is `index`.
+/// The next layer on a surface whose level is its mean height; `None` where the part is complete. `index` counts from
+/// 0.
 pub(crate) fn next(
     planned: &[Layer],
     levels: &Levels,
@@ -118,13 +119,13 @@ impl Correction<'_> {
         metal
     }
 
-    /// Height of the torch's tool point, mm: a layer's thickness above what lies below, at most one more or less than the
-    /// layer's top.
+    /// Height of the torch's tool point, mm: one layer thickness above the metal below, but no more than that away from
+    /// the layer's top.
     fn torch(&self, at: DVec3, width: f64) -> f64 {
         self.rung.top + self.error(at, width).clamp(-self.rung.height, self.rung.height)
     }
 
-    /// How much too high it is below a bead, mm; 0 where that does not matter or is not known.
+    /// How much too high the metal below a bead is, mm; 0 where that is not corrected for or not known.
     fn error(&self, at: DVec3, width: f64) -> f64 {
         match self.by {
             Feedback::Place => self.surface.mean_around(at.truncate(), width / 2.0).unwrap_or_default(),
@@ -133,7 +134,7 @@ impl Correction<'_> {
     }
 }
 
-/// A pass whose pieces are at most `longest` (mm) long.
+/// A pass cut into pieces at most `longest` (mm) long.
 pub fn pieces(pass: &Pass, longest: f64) -> Pass {
     let (mut points, mut widths, mut paces) = (Vec::new(), Vec::new(), Vec::new());
     for segment in pass.segments() {

@@ -12,19 +12,19 @@ use crate::layer::Layer;
 pub struct Followed {
     /// The layers, from the one after the scan.
     pub layers: Vec<Layer>,
-    /// Layers that the plan had left.
+    /// Number of layers that the plan had left.
     pub planned: usize,
-    /// Pieces of their passes.
+    /// Number of pieces in their passes.
     pub pieces: usize,
-    /// Those that need more or less metal than the window allows.
+    /// Number of pieces that need more or less metal than the window allows.
     pub clipped: usize,
-    /// Least and greatest metal of the first of them, as multiples of the planned one.
+    /// Least and greatest metal of the first of them, as multiples of the planned metal.
     pub metal: (f64, f64),
-    /// Expected height of the last one above the end of the plan, mm; that of the scan where no layer follows.
+    /// Expected height of the last one relative to the end of the plan, mm; that of the scan where no layer follows.
     pub end: Spread,
 }
 
-/// Plans the layers after the scanned one, whose number is counted from 1.
+/// Plans the layers after the scanned one, which has this `number`, counted from 1.
 pub fn follow(planned: &[Layer], number: usize, seen: &Seen, width: f64, rules: &Rules) -> Followed {
     let mut surface = seen.surface.clone();
     let (left, mut core_points) = (planned.len().saturating_sub(number), seen.core.clone());
@@ -37,7 +37,7 @@ pub fn follow(planned: &[Layer], number: usize, seen: &Seen, width: f64, rules: 
         end: Spread::default(),
     };
     let Some(levels) = Levels::of(planned) else { return followed };
-    // Each layer is a layer nearer to the end, except for what the window holds back.
+    // Each layer brings the build one layer closer to the end, except for what the window holds back.
     for index in number..2 * planned.len() {
         surface.settle(surface.spread(&core_points).mean);
         let Some(next) = next(planned, &levels, &surface, index, Feedback::Place, rules) else { break };

@@ -1,4 +1,5 @@
-//! Where the layers that follow lie: as many as end the last one at the height of the part.
+//! Where the layers that follow lie: their number and thickness are such that the last one ends at the height of the
+//! part.
 
 use crate::layer::Layer;
 
@@ -33,8 +34,9 @@ impl Levels {
         self.tops[self.tops.len() - 1]
     }
 
-    /// The next of the layers that lead from the height `built` (mm) to the end, each the same part of the planned ones;
-    /// `None` where less than half a layer is missing. Their number is the one that changes their thickness least.
+    /// The next of the layers that lead from the height `built` (mm) to the end, all the same fraction of the planned
+    /// ones; `None` where less than half a layer is missing. Their number is the one that changes their thickness
+    /// least.
     ///
     /// ```
     /// use beadwright::{Layer, adapt::Levels};
@@ -61,13 +63,13 @@ impl Levels {
         Some(Rung { top, height: top - built, source })
     }
 
-    /// How many planned layers lie below a height (mm).
+    /// The number of planned layers, with fractions, up to a height (mm).
     fn number_at(&self, z: f64) -> f64 {
         let k = self.tops.partition_point(|top| *top <= z).clamp(1, self.tops.len() - 1);
         (k - 1) as f64 + (z - self.tops[k - 1]) / (self.tops[k] - self.tops[k - 1])
     }
 
-    /// The height at which this many planned layers end, mm.
+    /// The height at which this number of planned layers ends, mm.
     fn height_at(&self, number: f64) -> f64 {
         let k = (number.max(0.0) as usize).min(self.tops.len() - 2);
         self.tops[k] + (number - k as f64) * (self.tops[k + 1] - self.tops[k])

@@ -4,8 +4,8 @@
 //! | --- | --- |
 //! | [`scan`] | reads scans: PLY, tables of points, height maps |
 //! | `align` | aligns a scan with the part |
-//! | `see` | compares it with what the plan promises, and refuses what cannot be true |
-//! | `surface` | how far a build is from what is promised, and what a layer changes of it |
+//! | `see` | compares it with the plan, and refuses what cannot be true |
+//! | `surface` | how far a build is from its plan, and how a layer changes that |
 //! | `area` | where heights are compared |
 //! | `levels` | how many layers follow, and where they lie |
 //! | `correct` | the next layer: metal and torch height by place |

@@ -10,8 +10,8 @@ use crate::report::sheet::{Row, Sheet};
 /// Pictures have at most about this many pixels along a side.
 const PIXELS: usize = 400;
 
-/// Heights of a grid as a picture: 0 in the middle of the scale, ±`most` (mm) at its ends; nothing where there is none.
-/// Of a large grid only some points are shown.
+/// Heights of a grid as a picture: 0 in the middle of the colour scale, ±`most` (mm) at its ends; blank where there is
+/// none. Large grids are thinned out.
 pub(crate) fn relief(surface: &Surface, most: f64, height: impl Fn(usize) -> Option<f64>) -> Picture {
     let grid = surface.grid();
     let steps = f64::from(u8::MAX - FIRST_HEIGHT);

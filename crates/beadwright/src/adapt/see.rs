@@ -1,10 +1,10 @@
-//! What a scan says about a build: how far each place is from what the plan promises.
+//! What a scan says about a build: how far each place is from where the plan puts it.
 //!
-//! After layer N the plan promises its top z on average, with the shape that the deposit model gives the layer's beads, as
-//! levelled as the surface is. Points inside the outline, without its rim, are compared with that, except at places where
-//! the model itself predicts a hollow or a hump, such as at the ends of beads: it is no measure there. The middle one of
-//! those in a cell of the grid counts, so that spatter does not. Where nothing was measured, the nearest measured cells
-//! stand in, weighted by 1/d².
+//! After layer N the plan promises a mean height of that layer's top z, with the shape that the deposit model gives the
+//! layer's beads, levelled as the model levels the surface. Points inside the outline, without its rim, are compared
+//! with that, except where the model itself predicts a hollow or a hump, such as at the ends of beads: these say
+//! nothing about the height. In each cell of the grid the median counts, so that spatter does not. Where nothing was
+//! measured, the nearest measured cells fill in, weighted by 1/d².
 
 use super::area::{core, near};
 use super::surface::{Spread, Surface};
@@ -14,21 +14,22 @@ use glam::DVec3;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-/// Fewer points over a layer say nothing.
+/// Fewer points than this over a layer say nothing.
 const FEWEST: usize = 3;
-/// A build is not farther from its plan than this part of its height, …
+/// A build is no farther from its plan than this fraction of its height, …
 const FARTHEST: f64 = 0.35;
-/// … or than this many layers, where that is more.
+/// … or than this many layers, whichever is more.
 const FARTHEST_LAYERS: f64 = 2.0;
-/// A build whose heights deviate by more layers than this from their mean is another build.
+/// If the heights deviate from their mean by more layers than this, the scan is of another build.
 const UNEVEN: f64 = 2.0;
-/// Of the points above half the height, at most this part may lie outside the part by more than a bead width.
+/// Of the points above half the height, at most this fraction may lie more than a bead width outside the part.
 const BESIDE: f64 = 0.2;
 
-/// Where the shape of a layer is predicted to be this part of its thickness above or below its top, nothing is compared.
+/// Where a layer is predicted to be more than this fraction of its thickness above or below its top, nothing is
+/// compared.
 const DOUBTFUL: f64 = 0.3;
 
-/// Cells that fill in where nothing was measured.
+/// Number of measured cells that fill in for one that was not.
 const STAND_IN: usize = 8;
 
 /// A scan compared with its plan.
@@ -44,7 +45,7 @@ pub struct Seen {
     pub error: Spread,
     /// Points of the scan that were compared.
     pub points: usize,
-    /// Part of the layer that lies within a bead width of one of them, 0 to 1.
+    /// Fraction of the layer, 0 to 1, that lies within a bead width of one of them.
     pub covered: f64,
 }
 
@@ -79,7 +80,7 @@ pub enum SeeError {
          width: the scan has other coordinates, or it is of another part."
     )]
     Beside {
-        /// Part of the points, %.
+        /// Share of these points, %.
         percent: f64,
         /// Number of the layer, from 1.
         number: usize,
@@ -96,7 +97,7 @@ pub enum SeeError {
         planned: f64,
         /// Number of the layer, from 1.
         number: usize,
-        /// How far they may lie apart, mm.
+        /// Greatest difference that is believed, mm.
         bound: f64,
         /// Number of the layer that is nearest in height.
         nearest: usize,
@@ -109,7 +110,7 @@ pub enum SeeError {
     Uneven {
         /// Standard deviation, mm.
         deviation: f64,
-        /// Most that is believed, mm.
+        /// Greatest deviation that is believed, mm.
         bound: f64,
         /// Number of the layer, from 1.
         number: usize,
@@ -140,7 +141,7 @@ pub fn see(planned: &[Layer], number: usize, points: &[DVec3], nominal: Nominal)
     Ok(Seen { surface, core, predicted, error, points: inside, covered })
 }
 
-/// The height predicted for each point with metal, above the layer's top, mm; and the points at which it is a measure.
+/// Predicted height above the layer's top for each point with metal, mm, and the points at which heights are compared.
 fn predicted(surface: &Surface, layer: &Layer, width: f64) -> (Vec<Option<f64>>, Vec<usize>) {
     let mut shape = surface.clone();
     shape.lay(&Layer::default(), layer);
@@ -168,10 +169,10 @@ fn beside(built: &[Layer], points: &[DVec3], surface: &Surface, nominal: Nominal
     if part > BESIDE { Err(SeeError::Beside { percent: 100.0 * part, number: built.len() }) } else { Ok(()) }
 }
 
-/// A point of the grid near which the scan has points.
+/// A grid point that has scan points near it.
 struct Cell {
     at: usize,
-    /// The middle one of their heights, measured minus predicted, mm.
+    /// The median of their heights, measured minus predicted, mm.
     error: f64,
     points: usize,
 }
@@ -205,7 +206,7 @@ fn believable(planned: &[Layer], number: usize, error: &Spread) -> Result<(), Se
     if deviation > bound { Err(SeeError::Uneven { deviation, bound, number }) } else { Ok(()) }
 }
 
-/// The error of every point with metal, and the part of the core that lies within `reach` (mm) of a measured cell.
+/// The error at every point with metal, and the fraction of the core that lies within `reach` (mm) of a measured cell.
 fn filled(
     surface: &Surface,
     cells: &[Cell],
@@ -219,7 +220,7 @@ fn filled(
     let stand_in = |i: usize| {
         let (mut sum, mut weights) = (0.0, 0.0);
         for (near, square) in tree.nearest_neighbor_iter_with_distance_2(&place(i)).take(STAND_IN) {
-            // The cell itself alone, where it was measured.
+            // Where the cell itself was measured, it outweighs all others.
             let weight = 1.0 / square.max(1e-12);
             (sum, weights) = (sum + weight * near.data, weights + weight);
         }

@@ -1,13 +1,14 @@
-//! How far the top of a build lies above or below what its plan promises: the model of height that `adapt` and `build` share.
+//! How far the top of a build lies above or below its planned height: the model of height that `adapt` and `build`
+//! share.
 //!
-//! A layer lays its beads as the deposit model does, and the pools level what they melt: where a layer laid metal, the error
-//! of the height spreads by conduction, 2 D t = (w/3)² a layer, as far as the layer's metal reaches and not beyond. Both are
-//! linear, so the error after a layer is that before it, plus the metal laid, minus the metal promised, levelled; its sum
-//! changes by exactly the metal that was too much or too little. A bead that hangs out over the layer below begins at the
-//! height of the metal next to it.
+//! A layer lays its beads as the deposit model does, and the pools level what they melt: where a layer laid metal, the
+//! error of the height diffuses like heat, 2 D t = (w/3)² per layer, as far as the layer's metal reaches and no
+//! farther. Both are linear, so the error after a layer is the error before it, plus the metal laid, minus the metal
+//! promised, levelled; its sum changes by exactly the metal that was too much or too little. A bead that overhangs the
+//! layer below begins at the height of the metal next to it.
 //!
-//! The model knows no flow along the path beyond a bead's width, no heat, no arc that lengthens where it is low, and no
-//! metal that drips.
+//! The model ignores flow along the path beyond a bead's width, heat, an arc that grows longer where the metal is low,
+//! and metal that drips.
 
 use crate::deposit::field::{Band, Grid, bands};
 use crate::deposit::stroke::strokes;
@@ -19,23 +20,24 @@ use planar::Bounds;
 /// Grid points across a bead, unless that would be more than [`MOST_POINTS`]. Odd, so that a bead along a row of points covers
 /// as many rows as it is wide, and none lies on its edges.
 const POINTS_ACROSS: f64 = 7.0;
-/// No surface has more points.
+/// Maximum number of points of a surface.
 const MOST_POINTS: f64 = 4e6;
-/// Deviation of the Gauss curve by which a layer's pools spread an error, in bead widths.
+/// Standard deviation of the Gaussian by which a layer's pools spread an error, in bead widths.
 const LEVELLED: f64 = 1.0 / 3.0;
-/// Greatest part of a difference that flows to a neighbouring point in one step: above 0.25 the steps would not be stable.
+/// Greatest fraction of a difference that flows to a neighbouring point in one step; above 0.25 the steps are unstable.
 const FLOW: f64 = 0.2;
-/// A point that no metal has reached for this many layers lies next to the wall: a bead that comes back overhangs.
+/// A point that got no metal in this many layers counts as lying beside the wall: a bead that comes back there
+/// overhangs.
 const RECENT: usize = 3;
 /// Thinner metal counts as none, mm.
 const NO_METAL: f64 = 1e-9;
 
-/// The error of the height of a build after some of its layers.
+/// The height error of a build after some of its layers.
 #[derive(Debug, Clone)]
 pub struct Surface {
     grid: Grid,
     nominal: Nominal,
-    /// Height above what is promised, mm.
+    /// Height above the promised height, mm.
     error: Vec<f64>,
     /// The last layer that laid metal at a point, counted from 1; 0 where none did.
     last: Vec<usize>,
@@ -48,7 +50,7 @@ pub struct Surface {
 pub struct Spread {
     /// Their mean.
     pub mean: f64,
-    /// Root of the mean square: from 0, not from the mean.
+    /// Root mean square, about 0 and not about the mean.
     pub rms: f64,
     /// The lowest.
     pub low: f64,
@@ -57,7 +59,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of all values; all 0 where there are none.
+    /// Mean, root mean square and extremes of all values; all 0 without any.
     pub fn of(values: impl Iterator<Item = f64>) -> Self {
         let (mut count, mut sum, mut square) = (0.0_f64, 0.0, 0.0);
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -81,7 +83,7 @@ impl Spread {
 }
 
 impl Surface {
-    /// The plate below the first of these layers; the grid covers them all.
+    /// The bare plate below the first of these layers, with a grid that covers them all.
     pub fn plate(layers: &[Layer], nominal: Nominal) -> Self {
         let passes = || layers.iter().flat_map(|layer| &layer.passes);
         let outlines =
@@ -102,17 +104,17 @@ impl Surface {
         &self.grid
     }
 
-    /// The height that the uppermost layer should have, mm.
+    /// The height that the uppermost layer should reach, mm.
     pub fn level(&self) -> f64 {
         self.level
     }
 
-    /// Height above what is promised at a point of the grid, mm; `None` where the uppermost layer laid no metal.
+    /// Height above the promised height at a point of the grid, mm; `None` where the uppermost layer laid no metal.
     pub fn error(&self, point: usize) -> Option<f64> {
         (self.last[point] == self.layers && self.layers > 0).then(|| self.error[point])
     }
 
-    /// Lays a layer: `laid` is what became of `promised`, with the same paths.
+    /// Lays a layer: `laid` is what `promised` turned into, along the same paths.
     pub fn lay(&mut self, promised: &Layer, laid: &Layer) {
         let (wanted, real) = (self.heights(promised), self.heights(laid));
         self.layers += 1;
@@ -123,7 +125,7 @@ impl Surface {
         self.level += promised.height;
     }
 
-    /// Takes what was measured after `layer`, whose number is counted from 1: heights above its promised top, mm.
+    /// Takes over the heights measured after `layer`, relative to its promised top, mm; `number` counts from 1.
     pub(super) fn measure(&mut self, number: usize, layer: &Layer, errors: &[Option<f64>]) {
         (self.layers, self.level) = (number, layer.z);
         for (i, error) in errors.iter().enumerate() {
@@ -133,14 +135,14 @@ impl Surface {
         }
     }
 
-    /// Changes every height of the uppermost layer, mm.
+    /// Adds `change` (mm) to every height of the uppermost layer.
     pub(crate) fn disturb(&mut self, mut change: impl FnMut() -> f64) {
         for (error, last) in self.error.iter_mut().zip(&self.last) {
             *error += if *last == self.layers { change() } else { 0.0 };
         }
     }
 
-    /// From here on the build should be `by` (mm) higher than it should have been so far.
+    /// Raises the height that the build should have by `by` (mm).
     pub(crate) fn settle(&mut self, by: f64) {
         self.level += by;
         self.error.iter_mut().for_each(|error| *error -= by);
@@ -168,12 +170,12 @@ impl Surface {
         Spread::of(points.iter().filter_map(|&i| self.error(i)))
     }
 
-    /// Error times area over all that the uppermost layer covers, mm³.
+    /// The error integrated over the area that the uppermost layer covers, mm³.
     pub fn excess_volume(&self) -> f64 {
         (0..self.error.len()).filter_map(|i| self.error(i)).sum::<f64>() * self.grid.step * self.grid.step
     }
 
-    /// What a layer's beads add, mm: their metal to the last bit, whatever the grid sees of them.
+    /// What a layer's beads add to the height, mm, scaled so that the grid holds exactly their metal.
     fn heights(&self, layer: &Layer) -> Vec<f64> {
         let strokes: Vec<Stroke> = layer.passes.iter().flat_map(|pass| strokes(pass, &self.nominal)).collect();
         let mut heights = bands(&strokes, &self.grid, |band: Band<'_>| band.heights).concat();
@@ -185,7 +187,7 @@ impl Surface {
         heights
     }
 
-    /// The points that have four neighbours.
+    /// The points that have all four neighbours.
     fn inner(&self) -> impl Iterator<Item = usize> + use<> {
         let Grid { columns, rows, .. } = self.grid;
         (1..rows.saturating_sub(1))
@@ -197,8 +199,8 @@ impl Surface {
         [point - 1, point + 1, point - columns, point + columns]
     }
 
-    /// Marks the points that a layer touches. Those that no metal lies under take the height of what is next to them, wave
-    /// after wave from there.
+    /// Marks the points that a layer touches. Points without metal below take the height of the points next to them,
+    /// wave after wave.
     fn hang(&mut self, touched: &[usize]) {
         let now = self.layers;
         let lies = |last: usize| now == 1 || (last > 0 && last + RECENT >= now);
@@ -209,7 +211,7 @@ impl Surface {
             let borders = |i: &usize| self.around(*i).iter().any(|&j| self.error(j).is_some());
             let (wave, rest): (Vec<usize>, Vec<usize>) = hanging.iter().partition(|&i| borders(i));
             let heights: Vec<f64> = wave.iter().map(|i| beside(i).mean).collect();
-            // Nothing next to it: it begins where it should.
+            // Nothing is next to it, so it begins at the height that it should have.
             let (wave, heights) = if wave.is_empty() { (rest.clone(), vec![0.0; rest.len()]) } else { (wave, heights) };
             hanging = if wave.len() == hanging.len() { Vec::new() } else { rest };
             for (i, height) in wave.into_iter().zip(heights) {
@@ -218,7 +220,7 @@ impl Surface {
         }
     }
 
-    /// Levels the error where the uppermost layer laid metal; what leaves a point arrives at its neighbours.
+    /// Levels the error where the uppermost layer laid metal; what leaves a point goes to its neighbours.
     fn even_out(&mut self, touched: &[usize]) {
         let wanted = (LEVELLED * self.nominal.bead.width / self.grid.step).powi(2);
         let steps = (wanted / (2.0 * FLOW)).ceil().max(1.0);

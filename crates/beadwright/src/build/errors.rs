@@ -1,38 +1,39 @@
-//! What goes wrong with beads: too much or too little metal, from pass to pass, along a pass and over the build.
+//! What goes wrong with beads: too much or too little metal, varying from pass to pass, along a pass and over the
+//! build.
 
 use crate::adapt::pieces;
 use crate::layer::Layer;
 use crate::pass::{Along, Pass};
 use crate::random::Random;
 
-/// Errors of the metal per length, as parts of it.
+/// Errors of the metal per length, as fractions of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
-    /// Deviation from pass to pass.
+    /// Standard deviation from pass to pass.
     pub pass: f64,
-    /// Deviation along a pass.
+    /// Standard deviation along a pass.
     pub along: f64,
-    /// Length over which the error along a pass falls to 1/e of its correlation, mm.
+    /// Distance along a pass over which the correlation of its error falls to 1/e, mm.
     pub correlation: f64,
-    /// Growth from the first to the last layer.
+    /// Relative growth of the metal from the first to the last layer.
     pub drift: f64,
-    /// Number of the pass that is lost, counted from 1 over the build: its arc does not burn.
+    /// Number of the pass that is lost because its arc does not burn, counted from 1 over the build.
     pub lost: Option<usize>,
-    /// Deviation of a point of a scan, mm.
+    /// Standard deviation of a point of a scan, mm.
     pub scan: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }
 
-/// Least and greatest metal of a bead that is laid at all, as parts of what is commanded.
+/// Least and greatest metal of a bead that is laid at all, as fractions of what is commanded.
 const METAL: (f64, f64) = (0.2, 2.0);
-/// Metal of a lost pass: none that counts, but its path is known.
+/// Metal of a lost pass, as a fraction: too little to matter, but its path is kept.
 const LOST: f64 = 1e-6;
-/// Number of pieces per correlation length; along each the error stays the same.
+/// Number of pieces per correlation length; within each the error is constant.
 const PIECES: f64 = 8.0;
 
 impl Errors {
-    /// A layer as it comes out: `share` (0 to 1) of the build is done, and `done` passes of it.
+    /// A layer as it comes out, when a `share` (0 to 1) of the build and `done` passes of it are laid.
     pub(super) fn layer(&self, layer: &Layer, share: f64, done: usize) -> Layer {
         let pass = |(i, pass): (usize, &Pass)| {
             if self.lost == Some(done + i + 1) {
@@ -43,7 +44,8 @@ impl Errors {
         Layer { passes: layer.passes.iter().enumerate().map(pass).collect(), ..layer.clone() }
     }
 
-    /// A pass as it comes out. Along it the error is a Markov chain: normal, its correlation falling as e^(−s/length).
+    /// A pass as it comes out. Along it the error is a normally distributed Markov chain; its correlation falls as
+    /// e^(−s/length).
     fn pass(&self, pass: &Pass, share: f64, mut random: Random) -> Pass {
         let mut pass = pieces(pass, self.correlation / PIECES);
         let whole = (1.0 + self.pass * random.normal()) * (1.0 + self.drift * share);
@@ -61,13 +63,13 @@ impl Errors {
         pass
     }
 
-    /// The noise of the scan after a layer.
+    /// The noise of the scan after a layer, mm.
     pub(super) fn scan(&self, layer: usize) -> impl FnMut() -> f64 + use<> {
         let (mut random, deviation) = (self.random([layer, 0]), self.scan);
         move || deviation * random.normal()
     }
 
-    /// Numbers of their own for each pass, so that every build with a seed meets the same errors.
+    /// A random generator for each pass, so that every build with the same seed meets the same errors.
     fn random(&self, [layer, pass]: [usize; 2]) -> Random {
         let mut random = Random::new(self.seed);
         let seed = [layer as u64, pass as u64]

@@ -1,8 +1,8 @@
 //! A plan welded in the height model (`adapt::surface`), with errors and with corrections by a scan after each layer.
 //!
-//! Every bead comes out with more or less metal than commanded ([`Errors`]); the surface takes it; after each layer a scan
-//! of the surface corrects the next one, by the same rules as for a real build (`adapt::correct`). Where beads depend on
-//! heat, the metal warms up as it is laid, and walls grow less. All numbers are seeded.
+//! Every bead comes out with more or less metal than commanded ([`Errors`]) and is laid on the surface; after each
+//! layer a scan of the surface corrects the next one, by the same rules as for a real build (`adapt::correct`). Where
+//! beads depend on heat, the metal warms up as it is laid, and walls rise less. All random numbers are seeded.
 
 mod errors;
 pub mod page;
@@ -29,11 +29,11 @@ pub struct Settings {
     pub errors: Errors,
     /// How far corrections may go.
     pub rules: Rules,
-    /// Heat that the plan does not account for; `None` where it does, or beads do not depend on it.
+    /// Heat that the plan does not account for; `None` where it does, or where beads do not depend on heat.
     pub heat: Option<Heat>,
 }
 
-/// Walls that grow less on warm metal.
+/// Walls that rise less on warm metal.
 #[derive(Debug, Clone)]
 pub struct Heat {
     /// The plate before the first layer.
@@ -45,8 +45,8 @@ pub struct Heat {
 }
 
 impl Heat {
-    /// Welds a layer. Metal that flows to the sides of a warm wall adds nothing to its height; between beads side by side it
-    /// stays where it is.
+    /// Welds a layer. Metal that flows to the sides of a warm wall is lost to its height; between beads side by side it
+    /// stays.
     fn spread(&mut self, laid: &mut Layer) {
         let (warm, Self { plate, law, rise }) = (self.plate.layer(laid), &*self);
         for (pass, warm) in laid.passes.iter_mut().zip(&warm.passes).filter(|(pass, _)| pass.kind == PassKind::Wall) {
@@ -68,7 +68,7 @@ pub struct Built {
     pub layer_height: f64,
     /// Pieces of passes that were laid.
     pub pieces: usize,
-    /// Those that needed more or less metal than the window allows.
+    /// Number of pieces that needed more or less metal than the window allows.
     pub clipped: usize,
 }
 
@@ -77,9 +77,9 @@ pub struct Built {
 pub struct BuiltLayer {
     /// The top that it should have, mm.
     pub z: f64,
-    /// Its height above that, mm, inside the outline less its rim.
+    /// Its height above that inside the outline less its rim, mm.
     pub error: Spread,
-    /// The same seen from above, ± a layer height, for some layers.
+    /// The same seen from above, on a scale of ± one layer height; only for some layers.
     pub picture: Option<Picture>,
 }
 
@@ -90,7 +90,8 @@ impl Built {
     }
 }
 
-/// Maximum number of layers of a build, as a multiple of the planned ones: if metal is lost again and again, it never ends.
+/// Maximum number of layers of a build, as a multiple of the planned number: if metal is lost again and again, it never
+/// ends.
 const MOST_LAYERS: usize = 2;
 /// About this many layers have a picture.
 const PICTURES: usize = 50;

@@ -9,7 +9,7 @@ pub(super) const CHECK: Check = Check {
     name: "air",
     what: "the arc on where the layer has no metal to lay",
     why: "a bead is welded across an opening or next to the part, as if a travel were made with the arc on",
-    example: "layer 2, pass 5, x 10.0 y 4.0 z 4.00 mm: the arc is on outside the part for 12.3 mm.",
+    example: "layer 2, pass 5, x 10.0 y 4.0 z 4.00 mm: the arc is on outside the part, on pieces 12.3 mm long in all.",
     remedy: "split the pass there, so that the torch travels with the arc off",
     find,
 };
@@ -27,7 +27,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
             let pieces: Vec<Segment> = pass.segments().map(once).filter(outside).collect();
             if let Some(first) = pieces.first() {
                 let length: f64 = pieces.iter().map(Segment::length).sum();
-                let text = format!("the arc is on outside the part, on pieces of {length:.1} mm.");
+                let text = format!("the arc is on outside the part, on pieces {length:.1} mm long in all.");
                 findings.push(CHECK.of_pass(layer, i, Some(first.from), text));
             }
         }

@@ -19,8 +19,8 @@ const NEAR: f64 = 0.5;
 /// A high start and a low end level each other, so it takes more of them than of starts alone.
 const LONGER: usize = 2;
 
-/// An end of an open pass: its place, whether the pass starts there, and on how many layers in a row, down from here,
-/// starts and ends have met there.
+/// An end of an open pass: its place, whether the pass starts there, and on how many consecutive layers, down from this
+/// one, starts and ends have met there.
 struct End {
     at: DVec2,
     starts: bool,
@@ -36,7 +36,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
             let on = |end: &&End| end.at.distance(at) < near;
             let meets = |end: &&End| on(end) && end.starts != starts;
             let under = below.iter().filter(on).map(|end| end.met).max().unwrap_or(0);
-            // A start in this layer, before this end was laid, is not a crater.
+            // Within a layer only a start can lie on a crater: that of an end laid before it.
             let met = below.iter().any(|end| meets(&end)) || (starts && here.iter().any(|end| meets(&end)));
             let met = if met { under + 1 } else { 0 };
             if met == most {

@@ -9,8 +9,8 @@ pub(super) const CHECK: Check = Check {
            or more",
     why: "the torch stays at the planned heights: its stick-out grows or shrinks with every layer, until the arc fails; serious \
           where metal ends more than one and a half stick-outs (process.ctwd) away",
-    example: "after the last layer 35 % of the area lies within one layer height (2 mm) of the plan, on average 13.95 mm \
-              below it, at most 0.31 mm above and 23.78 mm below.",
+    example: "after the last layer 35 % of the area lies within one layer height (2.00 mm) of the plan, on average \
+              13.95 mm below it, at most 0.31 mm above and 23.78 mm below.",
     remedy: "set layers.level = true so that layers are as high as their metal, if it is not set, or measure the layers as \
              they are built and correct the rest (beadwright adapt)",
     find,
@@ -18,8 +18,8 @@ pub(super) const CHECK: Check = Check {
 
 /// The fraction of the area that may end elsewhere.
 const ELSEWHERE: f64 = 0.25;
-/// No arc burns where metal ends this many stick-outs away from where it should. Less may be the model's: it lets what hangs beyond a
-/// leaning wall drop to the metal below.
+/// If metal ends this many stick-outs from where it should, no arc burns there. Smaller distances may be an error of
+/// the model, which lets metal beyond a leaning wall drop onto the metal below.
 const LOST: f64 = 1.5;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {

@@ -8,7 +8,7 @@ pub(super) const CHECK: Check = Check {
     name: "dense-points",
     what: "points too dense: three or more consecutive moves that each take less than program.min_point_time",
     why: "the controller cannot look ahead far enough, slows down, and the bead becomes thick there",
-    example: "layer 3: points too dense: 14 of its 250 moves take less than 0.012 s, the shortest 0.004 s.",
+    example: "layer 3: points too dense: 14 of its 250 moves take less than 0.012 s, the shortest 0.0040 s.",
     remedy: "raise program.chord_tolerance, fit arcs, or raise program.speed_tolerance where speeds change often",
     find,
 };

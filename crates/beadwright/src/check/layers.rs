@@ -23,7 +23,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let end = subject.layers.iter().rposition(|layer| !layer.passes.is_empty()).map_or(0, |last| last + 1);
     for layer in &subject.layers[..end] {
         let bottom = layer.z - layer.height;
-        // Another part may begin on the plate.
+        // A layer may begin on the plate again: that of another part.
         let on = if layer.half == Some(Half::Upper) { underside } else { below };
         let gap = if bottom.abs() < TOLERANCE * layer.height { bottom } else { bottom - on };
         if gap.is_nan() || gap.abs() > TOLERANCE * layer.height {

@@ -63,7 +63,7 @@ fn sentence(gap: f64) -> String {
     format!("the travel to it runs {how} metal that is already there.")
 }
 
-/// How high the metal is, in cells of a bead width.
+/// Height of the metal, on a grid of one bead width.
 struct Standing {
     width: f64,
     tops: HashMap<[i64; 2], f64>,
@@ -81,7 +81,7 @@ impl Standing {
         }
     }
 
-    /// The least height of a level move above the metal, mm, and where; none for moves up and down.
+    /// The least height of a level move above the metal, mm, and where that is; `None` for moves up and down.
     fn lowest_gap(&self, from: DVec3, to: DVec3) -> Option<(f64, DVec3)> {
         let level = from.truncate().distance(to.truncate()) > self.width / 2.0;
         let gap = |place: DVec3| Some((place.z - self.tops.get(&self.cell(place))?, place));
@@ -93,7 +93,7 @@ impl Standing {
         (place.truncate() / self.width).floor().as_i64vec2().to_array()
     }
 
-    /// Places half a bead apart on the way.
+    /// Places along the way, half a bead apart.
     fn places(&self, from: DVec3, to: DVec3) -> Vec<DVec3> {
         // No part is large enough to need more.
         let steps = (2.0 * from.distance(to) / self.width).ceil().clamp(1.0, 1e5) as usize;

@@ -79,14 +79,14 @@ pub const CHECKS: [Check; 26] = [
     dense_points::CHECK,
 ];
 
-/// Checks whose findings the plan warns of by itself.
+/// Checks whose findings `plan` already reports as warnings.
 const ALSO_WARNED: [(&Check, &[WarningKind]); 3] = [
     (&overhang::CHECK, &[WarningKind::Overhang, WarningKind::InTheAir, WarningKind::OverUnwelded]),
     (&layers::CHECK, &[WarningKind::EmptyLayer, WarningKind::HighStart, WarningKind::NothingBelow]),
     (&short_arc::CHECK, &[WarningKind::ShortArc]),
 ];
 
-/// Checks whose findings are about metal in the wrong place, a torch that is dragged over it, or a program that stops.
+/// Checks that find metal in the wrong place, a torch that is dragged over it, or a program that stops.
 const SERIOUS: [&Check; 9] = [
     &points::CHECK,
     &layers::CHECK,
@@ -101,7 +101,7 @@ const SERIOUS: [&Check; 9] = [
 
 /// A check.
 pub struct Check {
-    /// The name people type.
+    /// The name that users type.
     pub name: &'static str,
     /// What it looks for.
     pub what: &'static str,
@@ -119,14 +119,14 @@ pub struct Check {
 pub struct Subject<'a> {
     layers: Vec<&'a Layer>,
     profile: &'a Profile,
-    /// The layers of bodies welded before, and the profile of all bodies.
+    /// The layers of bodies welded earlier, and the profile of all bodies.
     earlier: &'a [&'a Layer],
     whole: &'a Profile,
     /// What the deposit model says about each layer.
     figures: Vec<Figures>,
     /// How the part grows from layer to layer.
     growth: Vec<Growth>,
-    /// What is there at the end.
+    /// How the part has grown at its end.
     built: Option<Growth>,
 }
 
@@ -144,15 +144,15 @@ pub struct LayerFigures {
 /// How a part grows, bead laid on bead.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Grown {
-    /// After each layer, where that layer lies.
+    /// After each layer, over the area of that layer.
     pub layers: Vec<Growth>,
-    /// At the end of each body, everywhere; `None` where nothing is laid, or where layers do not lie over one another as they are
-    /// unrolled.
+    /// At the end of each body, over its whole area; `None` where nothing is laid, or where layers do not lie over one
+    /// another once they are unrolled.
     pub built: Vec<Option<Growth>>,
 }
 
 impl Grown {
-    /// At the end, of the body that ends farthest from its plan.
+    /// The final growth of the body that ends farthest from its plan.
     pub fn worst(&self) -> Option<Growth> {
         self.built.iter().flatten().copied().min_by(|a, b| a.within.total_cmp(&b.within))
     }
@@ -280,7 +280,7 @@ pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, judged: 
         found.extend(CHECKS.iter().flat_map(|check| (check.find)(&subject)).map(|finding| subject.located(finding)));
         first = own.end;
     }
-    // What is wrong with the profile is so for each body.
+    // A fault of the profile is found once for each body.
     let mut known = BTreeSet::new();
     found.retain(|finding| finding.layer.is_some() || known.insert(finding.text.clone()));
     found
@@ -302,9 +302,9 @@ pub fn grouped(findings: &[Finding]) -> Vec<Finding> {
     CHECKS.iter().filter_map(of).collect()
 }
 
-/// Everything to report about a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]), its
-/// warnings, what was mended in the model (sentences), and its notes. Nothing is said twice; remedies are in the `words` of the
-/// program that people use.
+/// Everything to report about a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]),
+/// its warnings, what was mended in the model (sentences), and its notes. Nothing is said twice; remedies are worded
+/// for the program in use (`words`).
 pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> Vec<Finding> {
     let warned: Vec<Finding> = summary.warnings.summaries().map(Finding::from).collect();
     let new = |kind, severity| move |text: &String| Finding::new(kind, severity, text.clone());
@@ -346,7 +346,7 @@ impl Check {
     }
 }
 
-/// A place in a sentence.
+/// A place as a part of a sentence.
 fn at(place: Option<DVec3>) -> String {
     place.map_or_else(String::new, |p| format!(", x {:.1} y {:.1} z {:.2} mm", p.x, p.y, p.z))
 }
@@ -357,14 +357,14 @@ impl Subject<'_> {
         self.layers.iter().flat_map(|&layer| layer.passes.iter().enumerate().map(move |(i, pass)| (layer, i, pass)))
     }
 
-    /// What a layer stands on: the one below it, and where it is the upper of two, the one below that, too.
+    /// What a layer lies on: the layer below it, and for the upper layer of a pair also the one below that.
     fn below(&self, layer: &Layer) -> &[&Layer] {
         let at = self.layers.partition_point(|other| other.index < layer.index);
         let count = if layer.half == Some(Half::Upper) { 2 } else { 1 };
         &self.layers[at.saturating_sub(count)..at]
     }
 
-    /// A finding that says where it is: its place is on the layer, the sentence names that in space.
+    /// A finding whose text says where it is: its place lies on the layer, the text gives it in space.
     fn located(&self, finding: Finding) -> Finding {
         let Some(layer) = finding.layer else { return finding };
         let sheet = self.layers.iter().find(|l| l.index == layer).and_then(|l| self.profile.layers.sheet(l));
@@ -374,7 +374,7 @@ impl Subject<'_> {
         Finding { text, ..finding }
     }
 
-    /// Those that are beads: for dots, the profile says how long they take and how high they are.
+    /// The passes that are beads; how long dots take and how high they are is given by the profile.
     fn beads(&self) -> impl Iterator<Item = (&Layer, usize, &crate::pass::Pass)> {
         self.passes().filter(|(_, _, pass)| pass.kind != PassKind::Spot)
     }

@@ -10,15 +10,15 @@ pub(super) const CHECK: Check = Check {
     name: "overhang",
     what: "parts of a layer that reach more than check.max_overhang beyond the layer below",
     why: "there is nothing to weld on: the bead drops off",
-    example: "layer 20: 34.0 mm² overhang the layer below by more than half a bead.",
+    example: "layer 20: 34.0 mm² overhang the layer below by more than 3.8 mm.",
     remedy: "reorient the part, or add stock below it to be machined away",
     find,
 };
 
-/// Beads of bodies welded before lie under a layer if their tops are this far from its underside, in heights of the layer: what
-/// rises higher beside it begins below it.
+/// Beads of bodies welded earlier count as lying under a layer if their tops are this far above its underside, in layer
+/// heights; metal that rises higher next to the layer begins below it.
 const TOPS: std::ops::Range<f64> = -0.75..2.0;
-/// They are drawn this accurately, in bead widths.
+/// Accuracy to which they are outlined, in bead widths.
 const ACCURACY: f64 = 0.05;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
@@ -40,7 +40,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     subject.layers.iter().skip(1).filter_map(hanging).collect()
 }
 
-/// Metal of bodies welded before under a layer, as that is unrolled.
+/// Metal of bodies welded earlier under a layer, in that layer's unrolled coordinates.
 fn of_other_bodies(subject: &Subject<'_>, layer: &Layer) -> Region {
     let corner = layer.islands.first().and_then(|island| island.outer.points().first().copied());
     let Some(near) = corner.filter(|_| !subject.earlier.is_empty()) else { return Region::default() };

@@ -13,7 +13,7 @@ pub(super) const CHECK: Check = Check {
     find,
 };
 
-/// Rounding.
+/// Tolerance for rounding.
 const MORE: f64 = 1.001;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {

@@ -1,5 +1,5 @@
-//! A small program written with a profile in each of its dialects and read back, so that dangerous lines of its templates and
-//! settings are seen before anything is planned.
+//! Writes a small program in each dialect of a profile and reads it back, so that dangerous lines in its templates and
+//! settings are found before anything is planned.
 
 use crate::chart::Chart;
 use crate::dialect::reading::{self, Fault};
@@ -17,10 +17,10 @@ const PART: &str = "rehearsal";
 /// Moves of a circle.
 const MOVES: usize = 72;
 
-/// Dangerous lines of the programs that a profile writes, each with its dialect. Printers' programs, and dialects of your
-/// own, are not read for them; what a profile cannot write at all is refused elsewhere.
+/// Dangerous lines of the programs that a profile writes, each with its dialect. Printers' programs and your own
+/// dialects are not searched; what a profile cannot write at all is refused elsewhere.
 pub fn rehearse(profile: &Profile) -> Vec<(String, Fault)> {
-    // What is rehearsed are the lines of the profile; the two layers lie anywhere.
+    // The lines of the profile are rehearsed; where the two layers lie does not matter.
     let mut profile = profile.clone();
     profile.layers.chart = Chart::default();
     profile.layers.bodies.clear();

@@ -16,12 +16,12 @@ pub(super) const CHECK: Check = Check {
 
 /// Samples along a pass, per bead width.
 const SAMPLES: f64 = 4.0;
-/// Nearer than this share of the narrower bead, one lies on the other. In sharp corners beads of good fills lie half a
-/// width apart, over up to two widths; they keep a quarter everywhere.
+/// Places closer than this fraction of the narrower bead lie on each other. In sharp corners the beads of good fills
+/// come as close as half a width, over up to two widths, but nowhere closer than a quarter.
 const NEAR: f64 = 0.25;
 /// Places on a pass are compared if this many bead widths of it lie between them: beads at a corner always touch.
 const APART: f64 = 1.0;
-/// Length that counts, in bead widths: crossings are found by another check.
+/// Shortest run that is reported, in bead widths; crossings are found by another check.
 const LENGTH: f64 = 1.0;
 
 /// A place on a pass, and the width of the bead there.
@@ -38,12 +38,12 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     found.collect()
 }
 
-/// Where a pass first runs over what it has laid, and the length of the longest such run, mm.
+/// The place where a pass first runs over itself, and the length of the longest such run, mm.
 fn retraced(samples: &[Sample], width: f64, closed: bool) -> Option<(DVec3, f64)> {
     let apart = (APART * SAMPLES) as usize;
     let cell = |p: DVec3| (p.truncate() / width).floor().as_i64vec2().to_array();
     let mut laid: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
-    // Beginning and length of the run so far, and of the longest, in samples.
+    // Start and length of the current run and of the longest one, in samples.
     let (mut run, mut longest) = ((0, 0), (0, 0));
     for (k, &(place, own)) in samples.iter().enumerate() {
         let [x, y] = cell(place);

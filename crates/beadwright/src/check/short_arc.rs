@@ -7,7 +7,7 @@ pub(super) const CHECK: Check = Check {
     name: "short-arc",
     what: "passes that take less time than process.arc_start_delay, in programs that do not wait for the arc",
     why: "the torch has left before the arc is steady; what is left is a blob without fusion",
-    example: "layer 4, pass 9: it is over in 0.8 s; its arc takes 1.2 s to start.",
+    example: "layer 4, pass 9: it is over in 0.80 s; its arc takes 1.2 s to start.",
     remedy: "use a strategy with longer passes (loop), or raise fill.min_pass_length, so that planning leaves it out and \
              reports it",
     find,

@@ -9,7 +9,7 @@ pub(super) const CHECK: Check = Check {
     name: "stacked-starts",
     what: "arc starts that lie above each other on check.stacked_starts consecutive layers",
     why: "every start is a little high and every end a little low: stacked, they become a tower and a hole",
-    example: "layer 9, pass 1: arcs start within 1.0 bead width of this place on 8 consecutive layers.",
+    example: "layer 12, pass 1, x 0.0 y 3.0 z 24.00 mm: arcs start at this place on 12 consecutive layers.",
     remedy: "move the seam from layer to layer, or alternate the direction",
     find,
 };
@@ -19,7 +19,7 @@ const NEAR: f64 = 0.5;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let (width, most) = (subject.profile.bead.width, subject.profile.check.stacked_starts as usize);
-    // The starts of the layer below, each with the number of layers in a row, down from there, that start at that
+    // The starts of the layer below, each with the number of consecutive layers, down from there, that start at that
     // place.
     let mut below: Vec<(glam::DVec2, usize)> = Vec::new();
     let mut findings = Vec::new();
@@ -47,7 +47,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
 fn starts(layer: &Layer) -> impl Iterator<Item = (usize, glam::DVec3)> + '_ {
     let start = |(i, pass): (usize, &Pass)| Some((i, pass.start().filter(|p| p.is_finite())?));
     let lit_anew = layer.passes.iter().enumerate().filter(|_| !layer.lit.before);
-    // A column of dots has no other place.
+    // A column of dots cannot start anywhere else.
     let lit_anew = lit_anew.filter(|(_, pass)| pass.kind != PassKind::Spot);
     lit_anew.filter_map(start)
 }

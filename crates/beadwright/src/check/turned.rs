@@ -21,7 +21,7 @@ pub(super) struct Turned<'a> {
 /// All moves with the arc on; none where nothing turns the part.
 pub(super) fn moves<'a>(subject: &'a Subject<'_>) -> Vec<Turned<'a>> {
     let (mut programmer, mut found) = (subject.whole.programmer(), Vec::new());
-    // The axes go on from where the bodies before have left them.
+    // The axes continue from where the earlier bodies left them.
     for layer in subject.earlier {
         programmer.layer(layer);
     }

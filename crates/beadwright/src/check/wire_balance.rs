@@ -10,7 +10,7 @@ pub(super) const CHECK: Check = Check {
     name: "wire-balance",
     what: "wire feed that does not match the bead, for the profile and along every pass",
     why: "too much wire makes the part grow into the torch, too little leaves it hollow and low",
-    example: "the wire brings 113.1 mm³/s, but the bead takes 215.6 mm³/s at this deposition speed (−48 %).",
+    example: "The wire supplies 113.1 mm³/s, but the bead needs 215.6 mm³/s at this deposition speed (-48 %).",
     remedy: "use the deposition speed named in the message, or a different wire feed",
     find,
 };

@@ -12,7 +12,7 @@ const CONTENT_TYPES: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
     <Default Extension=\"xml\" ContentType=\"application/xml\"/>\n</Types>\n";
 
 const MODEL_TYPE: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel";
-/// The file of the model.
+/// Path of the model file in the archive.
 pub(super) const MODEL: &str = "/3D/3dmodel.model";
 
 /// A file of relationships, each with its type and target.
@@ -32,7 +32,7 @@ pub(super) fn relationships<'t>(targets: impl Iterator<Item = (&'t str, String)>
 pub(super) struct Archive(ZipWriter<Cursor<Vec<u8>>>);
 
 impl Archive {
-    /// With the files that every archive has: what its endings mean, and where its model is.
+    /// An archive with the files that each one needs: the content types by file extension, and where its model is.
     pub(super) fn new() -> Result<Self, ExportError> {
         let mut archive = Self(ZipWriter::new(Cursor::new(Vec::new())));
         archive.add("[Content_Types].xml", CONTENT_TYPES)?;

@@ -53,7 +53,7 @@ fn joined<'b>(bodies: impl Iterator<Item = &'b Body>) -> Solid {
     all
 }
 
-/// What grows into the two chunks of a file.
+/// The scene as it grows, to become the two chunks of a file.
 #[derive(Default)]
 struct Scene {
     data: Vec<u8>,

@@ -43,7 +43,7 @@ pub struct Beads<'a> {
     pub layers: &'a [Layer],
     /// How they are welded.
     pub profile: &'a Profile,
-    /// How warm the metal is during welding, where that was computed.
+    /// Temperatures of the metal during welding, where they were computed.
     pub heat: Option<&'a History>,
 }
 
@@ -91,7 +91,7 @@ pub enum ExportError {
     Packing(#[from] std::io::Error),
 }
 
-/// All of them.
+/// All formats for beads.
 pub const FORMATS: &[Format] = &[
     csv::FORMAT,
     #[cfg(feature = "parquet")]
@@ -132,7 +132,7 @@ pub struct LayerFormat {
     pub write: fn(&Layer) -> Result<Vec<u8>, ExportError>,
 }
 
-/// All of them.
+/// All formats for single layers.
 pub const LAYER_FORMATS: &[LayerFormat] = &[
     dxf::FORMAT,
     svg::FORMAT,
@@ -174,7 +174,7 @@ pub struct Piece {
     pub start: f64,
     /// How long it takes, s.
     pub seconds: f64,
-    /// Of the metal just ahead of the torch, °C; NaN where it was not computed.
+    /// Temperature of the metal just ahead of the torch, °C; NaN where it was not computed.
     pub temperature: f64,
 }
 
@@ -189,14 +189,14 @@ impl Beads<'_> {
         pieces
     }
 
-    /// The pieces of a pass, where they lie in space.
+    /// The pieces of a pass in space.
     fn in_space(&self, run: walk::Run<'_>) -> Vec<Piece> {
         let mut pieces = run.pieces;
         if let Some(sheet) = self.profile.layers.sheet(run.layer) {
             for piece in &mut pieces {
                 let on_layer = piece.from.distance(piece.to);
                 (piece.from, piece.to) = (sheet.at(piece.from).place, sheet.at(piece.to).place);
-                // The time stays.
+                // It takes the same time as on the layer.
                 let longer = piece.from.distance(piece.to) / on_layer;
                 piece.speed *= if longer.is_finite() { longer } else { 1.0 };
             }

@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub(super) const FORMAT: Format =
     Format { extension: "parquet", purpose: "a table of all pieces, for pandas, Polars and DuckDB", write };
 
-/// Rows that are written together.
+/// Number of rows that are written together.
 const GROUP: usize = 1 << 20;
 
 fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {

@@ -12,10 +12,10 @@ use crate::pass::PassKind;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, PI};
 
-/// Corners of a cross-section; a divisor of the accuracy of its shape, not of its area.
+/// Number of corners of a cross-section; they affect how accurate its shape is, but not its area.
 const CORNERS: usize = 10;
 
-/// Pieces shorter than this in the plane have no direction, mm.
+/// Pieces shorter than this in plan view have no direction, mm.
 const SHORTEST_MM: f64 = 1e-6;
 
 /// A bead, or the part of one between two sharp turns.
@@ -40,7 +40,7 @@ pub(super) fn bodies(beads: &Beads<'_>) -> Vec<Body> {
     runs.iter().flat_map(in_space).collect()
 }
 
-/// A piece of the path with its section.
+/// A piece of the path with its cross-section.
 struct Stretch {
     from: DVec3,
     to: DVec3,
@@ -49,7 +49,7 @@ struct Stretch {
 }
 
 impl Stretch {
-    /// `metal` is what the nominal wire feed lays, mm³/s.
+    /// `metal` is what the nominal wire feed lays, mm³/s; `None` for a piece that is too short.
     fn of(piece: &Piece, shape: Section, metal: f64) -> Option<Self> {
         let along = piece.to - piece.from;
         let level = along.truncate().length();
@@ -84,7 +84,7 @@ fn section(shape: Section, width: f64, area: f64) -> [DVec2; CORNERS] {
             }
         }
     });
-    // Corners on the outline leave out a little: what is left out goes on top.
+    // A polygon with its corners on the outline has slightly too little area; what is missing is added at the top.
     let inside: f64 = (0..CORNERS).map(|i| corners[i].perp_dot(corners[(i + 1) % CORNERS]) / 2.0).sum();
     corners.map(|corner| corner * DVec2::new(1.0, area / inside))
 }
@@ -100,15 +100,15 @@ fn of_run(run: &Run<'_>, shape: Section, metal: f64) -> Vec<Body> {
     chains.iter().map(|chain| Body { kind: run.pass.kind, solid: swept(chain, meets(chain)) }).collect()
 }
 
-/// Across the path where it bends from one direction to another: longer than 1, so that sections keep their width on both
-/// sides; none where it turns by more than 90°.
+/// The vector across the path at a bend, longer than 1 so that sections keep their width on both sides; `None` where
+/// the path turns by more than 90°.
 fn mitre(before: DVec2, after: DVec2) -> Option<DVec2> {
     let middle = (before + after).try_normalize()?.perp();
     let cosine = middle.dot(before.perp());
     (cosine > FRAC_1_SQRT_2 - 1e-9).then(|| middle / cosine)
 }
 
-/// The body along a chain of stretches; `closed` where its end is its beginning.
+/// The body along a chain of stretches; `closed` where it ends at its beginning.
 fn swept(chain: &[Stretch], closed: bool) -> Solid {
     let mut solid = Solid::default();
     let count = chain.len();
@@ -125,7 +125,7 @@ fn swept(chain: &[Stretch], closed: bool) -> Solid {
             _ if closed => across(count - 1, 0),
             _ => stretch.way.perp(),
         };
-        // The section of the piece before ends in the same plane; any difference is a step there.
+        // The section of the piece before ends in the same plane; where the two differ there is a step.
         for (at, across) in [(stretch.from, begin), (stretch.to, end)] {
             let corner = |c: &DVec2| at + (across * c.x).extend(c.y);
             solid.vertices.extend(stretch.section.iter().map(corner));

@@ -4,7 +4,7 @@ use super::{Beads, Piece};
 
 /// A column of numbers.
 pub(super) struct Column {
-    /// Its name, with the unit.
+    /// Its name with the unit.
     pub(super) name: &'static str,
     /// Decimals in texts.
     pub(super) decimals: usize,

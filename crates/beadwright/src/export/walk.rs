@@ -16,7 +16,7 @@ pub(super) struct Run<'a> {
     pub(super) pass: &'a Pass,
     /// Its straight pieces, with overlap, hot start and lead-out.
     pub(super) pieces: Vec<Piece>,
-    /// Where the torch leans at the ends of the pieces, one more than those; none where it stays upright.
+    /// The torch's lean at each end of a piece, one more than there are pieces; empty where it stays upright.
     pub(super) leans: Vec<DVec2>,
     /// Wait before the arc is struck: between layers, s.
     pub(super) pause: f64,
@@ -57,7 +57,7 @@ pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
 /// Where the torch is on its walk.
 struct Walk {
     torch: Torch,
-    /// None where the torch stays upright.
+    /// `None` where the torch stays upright.
     tilt: Option<Tilt>,
     /// Time since the build began, s.
     now: f64,
@@ -76,7 +76,7 @@ impl Walk {
         let leans = self.tilt.as_ref().map(|tilt| tilt.leans(&moves, wide)).unwrap_or_default();
         let welded = self.torch.weld(pass.kind, &moves);
         let steady: f64 = moves.windows(2).map(|w| w[0].0.distance(w[1].0) / self.torch.speed_at(w[1].1)).sum();
-        // Speeding up and slowing down is spread over the pass.
+        // Acceleration and deceleration are spread over the pass.
         let slower = if steady > 0.0 { welded.moving / steady } else { 1.0 };
         let (mut start, mut way, widths) = (self.now + welded.before, 0.0, widths(pass));
         let mut pieces = Vec::with_capacity(moves.len());
@@ -112,7 +112,7 @@ impl Walk {
     }
 }
 
-/// Moves close enough together that straight pieces between them follow their layer.
+/// Moves close enough together that the straight pieces between them follow their layer.
 fn followed(moves: Vec<(DVec3, f64)>, sheet: &Sheet<'_>) -> Vec<(DVec3, f64)> {
     let points: Vec<DVec3> = moves.iter().map(|(to, _)| *to).collect();
     let pace = |piece: usize| moves[(piece + 1).min(moves.len() - 1)].1;
@@ -124,7 +124,7 @@ fn followed(moves: Vec<(DVec3, f64)>, sheet: &Sheet<'_>) -> Vec<(DVec3, f64)> {
     followed.collect()
 }
 
-/// How far along a pass each width reaches, mm, and the width, mm; the overlap of a closed pass begins anew.
+/// How far along a pass each width reaches, mm, and the width, mm; all of it twice, for the overlap of a closed pass.
 fn widths(pass: &Pass) -> Vec<(f64, f64)> {
     let mut way = 0.0;
     let mut once: Vec<(f64, f64)> = Vec::new();

@@ -1,9 +1,9 @@
 //! Files that are complete or absent as a set: written next to their folder, which is exchanged for the new one in one step.
 //!
-//! A run that is killed, stopped or out of disk space leaves the folder as it was, and no controller ever finds layers of
-//! two plans in it. Files that Beadwright did not write stay. Where the file system cannot exchange folders, or the
-//! folder is the current one of this process (which a shell would go on seeing under its old name), the older set is moved
-//! out file by file, and then the new one in.
+//! A run that is killed, stopped or out of disk space leaves the folder as it was, and no controller ever finds layers
+//! of two plans in it. Files that Beadwright did not write stay. Where the file system cannot exchange folders, or the
+//! folder is the current one of this process (a shell would still see the old one), the older set is moved out file by
+//! file, and then the new one in.
 
 use super::stage::{self, Stage};
 use crate::dialect::Chunk;
@@ -22,7 +22,7 @@ pub struct FolderError {
     pub reason: io::Error,
 }
 
-/// Folders with more entries by others are not exchanged.
+/// A folder with more entries of other programs than this is not exchanged.
 const MOST_ENTRIES: usize = 10_000;
 
 /// The files of one run. Dropped without [`commit`](Self::commit) it leaves nothing behind.
@@ -97,15 +97,15 @@ impl Folder {
         self.open.take().map_or(Ok(()), |(_, mut writer)| writer.flush())
     }
 
-    /// Puts the files in place of those of an earlier run: a plan takes the place of the whole earlier plan, anything else
-    /// that of the files of the same names.
+    /// Puts the files in place of those of an earlier run: a plan replaces the whole earlier plan, anything else
+    /// replaces only files of the same names.
     ///
     /// # Errors
     /// [`FolderError`]; then nothing has changed.
     pub fn commit(mut self) -> Result<Written, FolderError> {
         let error = named(&self.named);
         self.close().map_err(&error)?;
-        // Two runs into one folder take turns; where folders cannot be locked, they do not know of each other.
+        // Two runs into one folder take turns; where folders cannot be locked, they cannot know of each other.
         let parent = self.folder.parent().and_then(|parent| File::open(parent).ok());
         parent.iter().for_each(|parent| _ = parent.lock());
         let earlier = earlier(&self.folder);
@@ -144,7 +144,7 @@ impl Folder {
             return Err(io::ErrorKind::PermissionDenied.into());
         }
         swap(&new, &self.folder)?;
-        // What somebody has put there in the meantime stays, too. From here on nothing fails: the exchange is done.
+        // What others have put there in the meantime stays, too. From here on nothing can fail: the exchange is done.
         for entry in fs::read_dir(&new).into_iter().flatten().filter_map(Result::ok) {
             let place = self.folder.join(entry.file_name());
             if others(&entry.file_name().to_string_lossy()) && fs::symlink_metadata(&place).is_err() {
@@ -154,7 +154,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Moves the files one by one, by way of a stage in the folder itself.
+    /// Moves the files one by one, through a stage in the folder itself.
     fn move_each(&self, old: &BTreeSet<String>) -> io::Result<()> {
         let (from, stage) = (self.stage.new_files(), Stage::new(&self.folder)?);
         let mut new: Vec<&str> = self.names.iter().map(String::as_str).collect();
@@ -243,8 +243,8 @@ fn swap(_: &Path, _: &Path) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Writes one file completely or not at all. What is not a plain file, such as `/dev/stdout`, is written to; links to files
-/// are refused, since what they lead to may not be intended.
+/// Writes one file completely or not at all. What is not a plain file, such as `/dev/stdout`, is written to directly;
+/// links to files are refused, since their targets may not be intended.
 ///
 /// # Errors
 /// [`FolderError`].
@@ -275,7 +275,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), FolderError> {
     write().map_err(named(path))
 }
 
-/// Permissions of a new file, from which the user's mask is taken.
+/// Permissions of a new file, before the user's umask applies.
 #[cfg(unix)]
 fn usual() -> Option<Permissions> {
     use std::os::unix::fs::PermissionsExt;
@@ -289,7 +289,7 @@ fn usual() -> Option<Permissions> {
 
 fn named(path: &Path) -> impl Fn(io::Error) -> FolderError + use<> {
     let path = path.to_owned();
-    // Errors of temporary files name a place that nobody knows: their kind is enough. Our own sentences stay.
+    // Errors of temporary files name a place unknown to the user: their kind is enough. Our own sentences stay.
     let plain = |error: io::Error| match error.get_ref() {
         Some(inner) if inner.downcast_ref::<io::Error>().is_some() || inner.to_string().contains(".beadwright-") => {
             error.kind().into()

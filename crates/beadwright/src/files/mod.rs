@@ -42,7 +42,7 @@ pub const REPORT: &str = "report.html";
 /// Name of the report on a plan whose programs are not written.
 pub const REFUSED: &str = "refused.html";
 
-/// What programs are written with.
+/// What writes programs in a machine's language.
 #[derive(Debug, Clone)]
 pub enum Post {
     /// A dialect of the library, by its name.
@@ -123,7 +123,7 @@ impl Programs {
         ready.into_iter().flat_map(|layer| self.whole(&layer, first)).collect()
     }
 
-    /// A layer whose arc goes out at its end.
+    /// Adds a layer whose arc goes out at its end.
     fn whole(&mut self, layer: &Layer, first: usize) -> Vec<Chunk> {
         let mut chunks = Vec::new();
         for (weaves, programmer) in [true, false].into_iter().zip(&mut self.programmers) {
@@ -137,7 +137,7 @@ impl Programs {
         chunks
     }
 
-    /// Takes note of a layer that is in no program.
+    /// Records a layer that is in no program.
     fn pass_over(&mut self, layer: &Layer) {
         self.programmers.iter_mut().for_each(|programmer| programmer.pass_over(layer));
     }
@@ -161,19 +161,19 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Whether it is all of a plan.
+    /// Whether the whole plan is selected.
     fn is_all(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The first pass of a layer; `None` where it is in no program.
+    /// Index of the first selected pass of a layer; `None` where the layer is in no program.
     fn first_pass(&self, layer: usize) -> Option<usize> {
         let chosen = self.layers.as_ref().is_none_or(|layers| layers.contains(&layer));
         (chosen && layer >= self.from).then_some(if layer == self.from { self.pass } else { 0 })
     }
 }
 
-/// Plans with more points are not checked as they are written, which needs all their layers at once.
+/// Plans with more points than this are not checked as they are written, since that needs all their layers at once.
 const MOST_CHECKED: usize = 2_000_000;
 
 /// Makes the text of all files of a plan as its layers come.
@@ -183,7 +183,7 @@ pub struct PlanFiles {
     profile: Profile,
     /// The lowest and the highest place of the part, mm.
     part: (DVec3, DVec3),
-    /// The layers so far, of a plan that is not too large to be checked, and their figures.
+    /// The layers so far, of a plan that is small enough to be checked, and their figures.
     layers: Vec<Layer>,
     figures: Vec<Figures>,
     points: usize,
@@ -270,7 +270,7 @@ impl PlanFiles {
         self.built.as_ref()
     }
 
-    /// What people must know about the programs, once all layers are written: sentences.
+    /// What users must know about the programs, once all layers are written, as sentences.
     pub fn notes(&self) -> Vec<String> {
         let unchecked = (self.points > MOST_CHECKED).then(|| {
             format!("The plan has {} points, so its checks were skipped. They can be run on plan.json.", self.points)
@@ -298,7 +298,7 @@ impl PlanFiles {
         Ok(self.found.as_deref().unwrap_or_default())
     }
 
-    /// The last text of all files; `total` is what the deposit model says about all layers.
+    /// The last text of all files; `total` is the judgement of the deposit model on all layers.
     ///
     /// # Errors
     /// [`DialectError`] of a program that is not complete; then nothing may be kept.
@@ -308,7 +308,7 @@ impl PlanFiles {
         repair: &RepairReport,
         total: Option<&Figures>,
     ) -> Result<Vec<Chunk>, DialectError> {
-        // Nobody cancels a task of our own.
+        // Nobody can cancel this task.
         let found = self.check(&Task::new()).map(<[Finding]>::to_vec).unwrap_or_default();
         let totals = self.totals().cloned();
         let mut chunks = self.programs.end();
@@ -319,7 +319,7 @@ impl PlanFiles {
         self.note(&chunks);
         let names: Vec<String> = self.names.into_iter().chain([METRICS, REPORT].map(str::to_owned)).collect();
         let mut metrics = summary.json(total);
-        // So that the next plan in this folder knows which files are those of this one.
+        // So that the next plan in this folder knows which files belong to this one.
         metrics["files"] = serde_json::json!(names);
         if let Some(totals) = &totals {
             metrics["programs"] = serde_json::json!(totals);
@@ -332,8 +332,8 @@ impl PlanFiles {
         Ok(chunks)
     }
 
-    /// The report on a plan whose programs are not written, which shows the places that are to blame; remedies are in the `words` of
-    /// the program that people use.
+    /// The report on a plan whose programs are not written; it shows the places at fault. Remedies are worded for the
+    /// program in use (`words`).
     pub fn refused(self, summary: &Summary, repair: &RepairReport, words: Words) -> Chunk {
         let findings = check::all_findings(summary, &repair.sentences(), &[]).into_iter();
         let findings: Vec<Finding> = findings.map(|finding| finding.in_words(words)).collect();

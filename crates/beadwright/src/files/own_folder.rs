@@ -1,4 +1,4 @@
-//! Fetches the texts of a dialect of your own.
+//! Reads the texts of your own dialects from their folders.
 
 use super::Post;
 use crate::dialect::own::{self, Own, OwnError};

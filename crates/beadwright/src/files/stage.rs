@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 const PREFIX: &str = ".beadwright-";
-/// While files are moved one by one: the names of those that are replaced.
+/// The names of the files being replaced, while files are moved one by one.
 const JOURNAL: &str = "moving";
 /// The journal while it is written.
 const DRAFT: &str = "draft";
@@ -45,10 +45,10 @@ impl Stage {
     /// one cannot be moved, nothing changes; what a killed run did not move, the next one moves.
     pub(super) fn move_into(mut self, target: &Path, old: &[&str], new: &[&str]) -> io::Result<()> {
         let (journal, draft) = (self.folder.path().join(JOURNAL), self.folder.path().join(DRAFT));
-        // Whole or not there: half a list would leave old files among the new ones.
+        // All or nothing: half a list would leave old files among the new ones.
         fs::write(&draft, old.join("\n"))?;
         fs::rename(draft, &journal)?;
-        // Should even the way back fail, the stage stays, with the older set in it.
+        // Should even undoing the moves fail, the stage stays, with the older set in it.
         self.folder.disable_cleanup(true);
         let moves = moves(self.folder.path(), target, old, new);
         let failed = moves.iter().enumerate().find_map(|(done, (from, to))| Some((done, fs::rename(from, to).err()?)));
@@ -68,7 +68,7 @@ fn moves(stage: &Path, target: &Path, old: &[&str], new: &[&str]) -> Vec<(PathBu
     out.chain(into).collect()
 }
 
-/// What is locked: the folder itself, which is there as long as anything in it.
+/// What is locked: the folder itself, which exists as long as anything in it.
 #[cfg(unix)]
 fn open_lock(stage: &Path) -> io::Result<File> {
     File::open(stage)
@@ -90,7 +90,7 @@ pub(super) fn clear(place: &Path) {
         }
         let lock = open_lock(&stage);
         if lock.as_ref().is_ok_and(|lock| lock.try_lock().is_ok()) {
-            // Nothing is deleted of which a part is still to be moved.
+            // Nothing is deleted while part of it is still to be moved.
             _ = complete(&stage, place).and_then(|()| fs::remove_dir_all(&stage));
         }
     }
@@ -105,12 +105,12 @@ fn complete(stage: &Path, target: &Path) -> io::Result<()> {
     let new: Vec<&str> = new.iter().map(String::as_str).collect();
     for (from, to) in moves(stage, target, &old, &new) {
         match fs::rename(from, to) {
-            // Somebody has taken it away in the meantime.
+            // It has been taken away in the meantime.
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             done => done?,
         }
     }
-    // Nothing is left to move, even if the rest of the stage is cleared only in part.
+    // Nothing is left to be moved, even if only part of the rest of the stage is cleared.
     fs::remove_file(stage.join(JOURNAL))
 }
 

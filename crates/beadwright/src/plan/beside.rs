@@ -1,5 +1,5 @@
-//! Whether the torch has room next to bodies that are finished, in space: it stands along the normal of the layer that it welds, and
-//! fills a cone above the wire's tip ([`TorchShape`]).
+//! Whether the torch has room next to finished bodies, in space: it points along the normal of the layer that it welds
+//! and fills a cone above the wire's tip ([`TorchShape`]).
 
 use super::{Header, Sink};
 use crate::chart::At;
@@ -32,11 +32,11 @@ struct Close {
     travels: bool,
 }
 
-/// Distance of points on surfaces, mm.
+/// Spacing of the points on surfaces, mm.
 const SPACING: f64 = 4.0;
-/// Places on passes are looked at this far apart, in bead widths.
+/// Spacing of the places on passes that are checked, in bead widths.
 const STEP: f64 = 2.0;
-/// Around the bare wire, mm.
+/// Radius kept free around the bare wire, mm.
 const WIRE: f64 = 1.5;
 
 impl Beside {
@@ -44,12 +44,12 @@ impl Beside {
         Self { torch: profile.torch, finished: Vec::new(), close: Vec::new() }
     }
 
-    /// Takes metal that is finished; `what` it is, as messages say it.
+    /// Adds finished metal; `what` is its name in messages.
     pub(super) fn finish(&mut self, what: &str, mesh: &Mesh) {
         self.finished.push((what.to_owned(), surface_points(mesh)));
     }
 
-    /// That nothing was looked at.
+    /// A note that nothing was checked, where the profile lacks `[torch]`.
     pub(super) fn note(&self) -> Option<String> {
         (self.torch.is_none() && self.finished.len() > 1).then(|| {
             "Whether the torch has room next to finished bodies was not checked: the profile lacks the section [torch].".to_owned()
@@ -63,14 +63,14 @@ impl Beside {
             let does = if *travels { "travels over" } else { "welds" };
             format!(
                 "The torch would hit {finished} while it {does} \"{welded}\" at x {:.1} y {:.1} z {:.1} mm: near x {:.1} y {:.1} z {:.1} mm it \
-                 needs {needs:.1} mm beside its axis and has {has:.1} mm (section [torch]). Weld the bodies in another order, or part \
-                 them elsewhere (layers.bodies).",
+                 needs {needs:.1} mm beside its axis and has {has:.1} mm (section [torch]). Weld the bodies in \
+                 another order, or divide the part elsewhere (layers.bodies).",
                 tip.x, tip.y, tip.z, metal.x, metal.y, metal.z
             )
         })
     }
 
-    /// Looks at the torch at places of a body that is being welded.
+    /// Checks the torch at places on a body that is being welded.
     fn look(&mut self, welded: &str, places: &[At], travels: bool) {
         let Some(torch) = self.torch else { return };
         for (finished, points) in &self.finished {
@@ -98,7 +98,7 @@ impl Beside {
     }
 }
 
-/// The room that the torch needs and has beside its axis where it is too close to metal, mm.
+/// The room that the torch needs and has beside its axis, mm; `None` where it is clear of the metal.
 fn lack(torch: &TorchShape, tip: &At, metal: DVec3, travels: bool) -> Option<(f64, f64)> {
     let from = metal - tip.place;
     let above = from.dot(tip.normal);
@@ -123,7 +123,7 @@ fn surface_points(mesh: &Mesh) -> Vec<DVec3> {
     cells.into_values().collect()
 }
 
-/// Hands layers on and watches where the torch goes.
+/// Hands layers on and checks where the torch goes.
 pub(super) struct Watch<'a, S> {
     sink: &'a mut S,
     beside: &'a mut Beside,

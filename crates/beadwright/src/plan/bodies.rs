@@ -1,5 +1,5 @@
-//! Parts that are welded as several bodies, one after another (`layers.bodies`): each is planned as a part of its own, in the
-//! coordinates of its own chart, on the metal of those before it.
+//! Parts that are welded as several bodies, one after another (`layers.bodies`): each is planned as a part of its own,
+//! in the coordinates of its own chart, on the metal of the bodies before it.
 
 use super::beside::{Beside, Watch};
 use super::charted::{self, Unrolled};
@@ -21,14 +21,14 @@ use std::borrow::Cow;
 struct Own<'a> {
     body: &'a Body,
     profile: Cow<'a, Profile>,
-    /// In space; around an axis and along a guide with what lies below its first layer.
+    /// In space; around an axis and along a guide, including what lies below its first layer.
     mesh: Mesh,
 }
 
 /// Plans a part as the bodies that its profile names, and hands all layers to `sink`, numbered consecutively.
 ///
 /// # Errors
-/// [`PlanError`], including [`PlanError::Body`] for a body of which nothing is there, or that cannot be planned.
+/// [`PlanError`], including [`PlanError::Body`] for a body that contains nothing of the part or cannot be planned.
 pub(super) fn bodies_into<S: Sink + Send>(
     name: &str,
     part: PartRef,
@@ -85,10 +85,10 @@ pub(super) fn bodies_into<S: Sink + Send>(
     summary.notes.extend(owned.first().filter(|_| onto.is_none()).and_then(Own::on_what_is_there));
     summary.forbidden.extend(beside.sentences());
     let twice = welded_twice(mesh, &owned);
-    // What lies below a body on stock is there already.
+    // What lies below a body on stock is already there.
     let counts = !profile.layers.bodies.is_empty() && !bodies_on_stock(profile) && twice.is_empty();
     if let Some(missing) = missing(mesh, summary.metrics.mesh_volume_mm3).filter(|_| counts) {
-        // Where passes lie in the air, it is the likely reason.
+        // The likely reason why passes lie in the air.
         let hang = summary.warnings.summaries().any(|warning| IN_THE_AIR.contains(&warning.kind));
         let to = if hang { &mut summary.forbidden } else { &mut summary.notes };
         to.insert(0, missing);
@@ -108,7 +108,7 @@ fn bodies_on_stock(profile: &Profile) -> bool {
 /// What messages call an existing part.
 const BASE: &str = "the part that is there already";
 
-/// Metal that belongs to no body, or to two, counts from this part of the whole.
+/// Metal that belongs to no body, or to two, is reported from this fraction of the whole.
 const MISSING: f64 = 2e-3;
 
 fn missing(mesh: &Mesh, bodies: Option<f64>) -> Option<String> {
@@ -128,8 +128,8 @@ fn missing(mesh: &Mesh, bodies: Option<f64>) -> Option<String> {
     })
 }
 
-/// Which bodies share metal that both would weld, as sentences. Around an axis and along a guide the mesh of a body holds what lies
-/// below its first layer, too, and solids may overlap.
+/// Which bodies share metal that both would weld, as sentences. Around an axis and along a guide the mesh of a body
+/// includes what lies below its first layer, and solids may overlap.
 fn welded_twice(whole: &Mesh, bodies: &[Own<'_>]) -> Vec<String> {
     let by_planes = |own: &&Own<'_>| matches!(own.body.chart, Chart::Plane(_)) && own.body.solids.is_empty();
     let bodies: Vec<&Own<'_>> = bodies.iter().filter(by_planes).collect();
@@ -141,7 +141,7 @@ fn welded_twice(whole: &Mesh, bodies: &[Own<'_>]) -> Vec<String> {
         (volume > MISSING * whole.volume().abs()).then(|| {
             format!(
                 "Bodies \"{}\" and \"{}\" have {:.1} cm³ in common, around x {:.1} y {:.1} z {:.1} mm, which would be welded twice; \
-                 the second time, the torch would run into finished metal. Part them by planes (within).",
+                 the second time, the torch would run into finished metal. Separate them by planes (within).",
                 own.body.name,
                 other.body.name,
                 volume / 1e3,
@@ -155,7 +155,7 @@ fn welded_twice(whole: &Mesh, bodies: &[Own<'_>]) -> Vec<String> {
 }
 
 impl Own<'_> {
-    /// That the first body leans on something that the plan cannot know.
+    /// A note that the first body rests on something that the plan cannot know.
     fn on_what_is_there(&self) -> Option<String> {
         let leans = matches!(self.body.chart, Chart::Plane(_)) && !self.body.chart.is_level() && !self.body.on_stock;
         leans.then(|| {
@@ -175,7 +175,7 @@ impl Own<'_> {
         PlanError::Body { name: self.body.name.clone(), reason: reason.into() }
     }
 
-    /// Errors of a body name it.
+    /// Errors of a body get its name.
     fn named<E>(&self, error: PlanError<E>) -> PlanError<E> {
         match error {
             PlanError::Cancelled(_) | PlanError::Sink(_) => error,
@@ -214,7 +214,7 @@ impl<'a> Ready<'a> {
         self.unrolled.as_ref().map_or(self.own.part(), Unrolled::part)
     }
 
-    /// What its layers lie on besides one another.
+    /// What its layers lie on, apart from one another.
     fn footing<'m, E>(&self, others: impl Iterator<Item = &'m Mesh>, task: &Task) -> Result<Footing, PlanError<E>> {
         let Own { body, profile, .. } = self.own;
         let mut metal: Vec<Under> = Vec::new();
@@ -238,7 +238,7 @@ impl<'a> Ready<'a> {
         let own = Slicer::of_slabs(mesh, vec![*first], profile.slice_options(), task)?.on(&profile.layers.chart);
         let own: Vec<Polygon> = own.all(task)?.into_iter().flat_map(|slice| slice.islands).collect();
         let own = Region::from_normalised(own);
-        // Around an axis and along a guide the mesh of a body holds what lies below its first layer, too.
+        // Around an axis and along a guide the mesh of a body includes what lies below its first layer.
         let whole = |other: &&Own<'_>| matches!(other.body.chart, Chart::Plane(_) | Chart::Surface(_));
         for other in later.iter().filter(whole) {
             let under = under_layers(&other.mesh, &[*first], profile, task)?;
@@ -266,15 +266,16 @@ impl<'a> Ready<'a> {
     }
 }
 
-/// A body lies on another if this part of its first layer does.
+/// A body lies on another if this fraction of its first layer does.
 const LIES_ON: f64 = 0.25;
 
-/// How far below the first layer metal may lie, as a part of a layer's height.
+/// How far below the first layer metal may lie, as a fraction of a layer's height.
 const GAP: f64 = 0.25;
-/// How far below any other: where layers wedge out on a slope, the last one below ends where half of it would have no room.
+/// How far below any other layer: where layers wedge out on a slope, the last one below ends where half of it would not
+/// fit.
 const WEDGED: f64 = 0.55;
 
-/// What of a mesh lies just under each layer.
+/// The parts of a mesh that lie just under each layer.
 fn under_layers<E>(mesh: &Mesh, slabs: &[Slab], profile: &Profile, task: &Task) -> Result<Vec<Under>, PlanError<E>> {
     let (chart, usual) = (&profile.layers.chart, profile.layers.height);
     let lowered = chart.lowered(usual);
@@ -282,7 +283,7 @@ fn under_layers<E>(mesh: &Mesh, slabs: &[Slab], profile: &Profile, task: &Task) 
     let gap = |k: usize, slab: &Slab| if k == 0 { GAP * usual } else { WEDGED * slab.height };
     let cuts: Vec<(f64, f64)> =
         slabs.iter().enumerate().map(|(k, slab)| (slab.z - slab.height, gap(k, slab))).collect();
-    // Slabs are cut in their middles.
+    // Slabs are cut at their middle height.
     let thin = GAP * usual;
     let thin = |(height, gap): &(f64, f64)| Slab { z: height + usual - gap + thin / 2.0, height: thin };
     let slicer = Slicer::of_slabs(&mesh, cuts.iter().map(thin).collect(), profile.slice_options(), task)?;

@@ -1,4 +1,4 @@
-//! What fills an island that its strategy cannot: of several strategies the one that the deposit model finds best.
+//! Fills an island that its strategy cannot fill: with the one of several strategies that the deposit model finds best.
 
 use super::{deposit_settings, emitter};
 use crate::deposit::Judge;
@@ -13,15 +13,16 @@ use crate::layer::Layer;
 use crate::profile::Profile;
 use planar::Polygon;
 
-/// Strategies that are tried; of equals, the first is taken. Scan lines are not tried: they leave outlines ragged.
+/// Strategies that are tried; the first of equally good ones is taken. Scan lines are not tried: they leave outlines
+/// ragged.
 const TRIED: [&dyn Strategy; 6] = [&OneLoop, &Spiral, &Fermat, &Mat, &Hybrid, &Contour];
 /// An arc start counts as much as a void or a hump of this area, in squared bead widths.
 const START: f64 = 0.5;
 
-/// Low area counts as this much of a void.
+/// Low area counts as this fraction of void area.
 const LOW: f64 = 0.5;
 
-/// The first simpler fill by the strategy itself that can be welded, as `is_sound` says.
+/// The first of the strategy's own simpler fills that can be welded, as `is_sound` tells.
 pub(super) fn simpler(
     strategy: &dyn Strategy,
     island: &Polygon,
@@ -47,7 +48,7 @@ pub(super) fn best(
     rated.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, fill)| fill)
 }
 
-/// Voids, low area, humps and metal outside, plus what arc starts count for, mm².
+/// Voids, low area, humps and metal outside, plus the area that arc starts count for, mm².
 fn cost(fill: &Fill, island: &Polygon, settings: &FillSettings, profile: &Profile) -> f64 {
     let (z, height, index) = (profile.layers.height, profile.layers.height, settings.layer);
     let passes = emitter::passes(vec![fill.clone()], index, (z, height), profile, &mut None);

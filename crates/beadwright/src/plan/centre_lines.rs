@@ -20,7 +20,7 @@ pub(super) fn weld_lines(Lines { index, slab, sections, warnings }: Lines, profi
     filled
 }
 
-/// The sides of a wall lie at most this far apart, in bead widths: two beads would have room between them.
+/// The sides of a wall lie at most this far apart, in bead widths: beyond that two beads would fit between them.
 const SIDES: f64 = 2.0;
 
 /// The centre-lines of a wall: its curves, or the middle lines between them if they are its sides.
@@ -39,7 +39,7 @@ pub(super) fn centre_lines<'a, E>(
     }
 }
 
-/// Beads may be wider or narrower than the wall between its sides by this fraction without a word.
+/// Beads may be wider or narrower than the wall between its sides by this fraction without a note.
 const AS_THICK: f64 = 0.1;
 
 /// How thick a wall is between its sides, as a sentence where its beads have another width.
@@ -66,8 +66,8 @@ pub(super) fn weld_curves(curves: &WallCurves, index: usize, slab: Slab, profile
     weld_sections(&sections, half, index, slab, profile)
 }
 
-/// Centre-lines of walls as passes, where `half` gives half the width at a place (mm); the area they cover stands in for the
-/// slice.
+/// Centre-lines of walls as passes; `half` gives half the width at a place (mm), and the area that they cover takes the
+/// place of the slice.
 fn weld_sections(
     sections: &[Section],
     half: impl Fn(DVec2) -> f64,
@@ -90,7 +90,7 @@ fn weld_sections(
     let covered = along(true).union(&along(false));
     let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
     let bare = coverage::bare(&paths, &covered, width);
-    // Where a curve was too short or vanished in a junction.
+    // Bare where a curve was too short or vanished in a junction.
     if bare.area > BARE_CURVE * width * width {
         let (kind, layer) = (WarningKind::Bare, index);
         slice.warnings.push(Warning { kind, layer, place: bare.place, size: bare.area });
@@ -109,7 +109,7 @@ fn weld_sections(
     }
 }
 
-/// What is left bare of curves is reported if it is this area or more, in squared bead widths.
+/// Bare area along curves is reported from this size, in squared bead widths.
 const BARE_CURVE: f64 = 0.5;
 
 /// Accuracy of the round ends of the area that a curve covers, mm.

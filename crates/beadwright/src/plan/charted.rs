@@ -1,4 +1,5 @@
-//! Parts whose layers are not level: planned from their mesh in the coordinates of the profile's chart, in which layers are level.
+//! Parts whose layers are not level: their mesh is planned in the coordinates of the profile's chart, in which layers
+//! are level.
 
 use super::{PlanError, stock};
 use crate::chart::warp::{self, WarpError};
@@ -25,13 +26,13 @@ pub(crate) fn unrolled<'a>(mesh: &'a Mesh, profile: &Profile, task: &Task) -> Re
     Ok(if chart.is_level() { Cow::Borrowed(mesh) } else { Cow::Owned(warp::warped(chart, mesh, TOLERANCE, task)?) })
 }
 
-/// Parts whose middle lies farther than this part of their size from the axis of their layers may have been placed elsewhere.
+/// If a part's middle lies farther from the axis of its layers than this fraction of its size, it may be misplaced.
 const ASIDE: f64 = 0.1;
-/// Metal below the first plane counts from this part of the whole.
+/// Metal below the first plane is reported from this fraction of the whole.
 const MISSING: f64 = 1e-3;
 
-/// What people should know about the chart of a part, as sentences. `placed` is the part as it stands on the table, `unrolled` the
-/// same in the chart.
+/// What users should know about the chart of a part, as sentences. `placed` is the part as it stands on the table,
+/// `unrolled` the same part in the chart's coordinates.
 pub(super) fn notes(placed: &Mesh, unrolled: &Mesh, profile: &Profile) -> Vec<String> {
     let chart = &profile.layers.chart;
     let inside = matches!(chart, Chart::Cylinder(Cylinder { side: Side::Inner, .. })).then(|| {
@@ -45,7 +46,7 @@ pub(super) fn notes(placed: &Mesh, unrolled: &Mesh, profile: &Profile) -> Vec<St
         .collect()
 }
 
-/// That a part may have been placed elsewhere.
+/// A note that a part may be misplaced.
 fn aside(placed: &Mesh, unrolled: &Mesh, chart: &Chart) -> Option<String> {
     let (low, high) = placed.bounds();
     let (middle, size) = (low.midpoint(high), (high - low).length());
@@ -66,10 +67,10 @@ fn aside(placed: &Mesh, unrolled: &Mesh, chart: &Chart) -> Option<String> {
     })
 }
 
-/// Beads that lie farther apart than planned by more than this are worth a word.
+/// It is reported if beads lie farther apart than planned by more than this fraction.
 const STRETCHED: f64 = 0.01;
 
-/// That beads lie farther apart than planned on the slopes of a surface.
+/// A note that beads lie farther apart than planned on the slopes of a surface.
 pub(super) fn stretched(unrolled: &Mesh, chart: &Chart) -> Option<String> {
     let most = unrolled.vertices.iter().map(|p| chart.stretch(p.truncate())).fold(1.0, f64::max) - 1.0;
     (most > STRETCHED).then(|| {
@@ -81,7 +82,7 @@ pub(super) fn stretched(unrolled: &Mesh, chart: &Chart) -> Option<String> {
     })
 }
 
-/// That part of a solid lies below the first of its planes, and is not welded.
+/// A note that part of a solid lies below the first of its planes and is not welded.
 fn below(placed: &Mesh, unrolled: &Mesh, chart: &Chart) -> Option<String> {
     let (whole, above) = (placed.volume(), chart.volume(unrolled));
     let missing = whole - above;
@@ -94,7 +95,8 @@ fn below(placed: &Mesh, unrolled: &Mesh, chart: &Chart) -> Option<String> {
     })
 }
 
-/// Why the programs of a part inside a bore should not be started: the torch would travel through the axis into the other side.
+/// Why the programs of a part inside a bore should not be started: the torch would travel across the axis into the far
+/// side.
 pub(super) fn too_narrow(top: f64, profile: &Profile) -> Option<String> {
     let Chart::Cylinder(Cylinder { side: Side::Inner, radius, .. }) = profile.layers.chart else { return None };
     let above = profile.travel.clearance + profile.start_stop.dwell_height;
@@ -106,14 +108,14 @@ pub(super) fn too_narrow(top: f64, profile: &Profile) -> Option<String> {
     })
 }
 
-/// A solid in the coordinates in which its layers are level.
+/// A solid in the coordinates of its chart, in which its layers are level.
 pub(super) struct Unrolled<'a> {
     mesh: Cow<'a, Mesh>,
     milled: Option<Cow<'a, Mesh>>,
 }
 
 impl<'a> Unrolled<'a> {
-    /// `None` for what is planned as it is.
+    /// `None` for a part that is planned as it is.
     pub(super) fn of<E>(part: PartRef<'a>, profile: &Profile, task: &Task) -> Result<Option<Self>, PlanError<E>> {
         let chart = &profile.layers.chart;
         if chart.is_level() {
@@ -141,31 +143,32 @@ impl<'a> Unrolled<'a> {
     }
 }
 
-/// What lies over or under a layer, as that layer is unrolled: around an axis each layer is longer than the one below it, and an
-/// island that crosses the seam may begin a turn earlier.
+/// Maps places on a layer onto a layer above or below it: around an axis each unrolled layer is longer than the one
+/// below it, and an island that crosses the seam may begin one turn earlier.
 #[derive(Clone, Copy)]
 pub(crate) struct Across<'a> {
     chart: &'a Chart,
-    /// Middles of the layers, mm.
+    /// Heights of the middles of the two layers, mm.
     from: f64,
     to: f64,
 }
 
-/// Turns after which a place on a layer is there again.
+/// Numbers of turns after which a place appears on a layer again.
 const TURNS: [f64; 3] = [-1.0, 0.0, 1.0];
 
 impl<'a> Across<'a> {
-    /// From the layer with one middle (mm) to that with another; `None` where layers lie over one another as they are.
+    /// From the layer whose middle is at the height `from` (mm) to the one at `to`; `None` where the two need no
+    /// mapping.
     pub(crate) fn new(chart: &'a Chart, from: f64, to: f64) -> Option<Self> {
         chart.goes_around().then_some(Self { chart, from, to })
     }
 
-    /// From one layer to another.
+    /// From one layer to another; `None` where the two need no mapping.
     pub(crate) fn layers(profile: &'a Profile, from: &Layer, to: &Layer) -> Option<Self> {
         Self::new(&profile.layers.chart, from.middle(), to.middle())
     }
 
-    /// Where a place lies, a turn before, and a turn after.
+    /// The place on the other layer, one turn before, at the same turn, and one turn later.
     pub(crate) fn places(&self, p: DVec2) -> impl Iterator<Item = DVec2> {
         TURNS.into_iter().map(move |turns| self.place(p, turns))
     }
@@ -190,11 +193,12 @@ impl<'a> Across<'a> {
     }
 }
 
-/// Pieces of passes in space keep this close to the line on their layer, mm, and normals turn by no more than this on each, rad.
+/// In space, pieces of passes keep this close to the line on their layer, mm, and the normal turns by no more than this
+/// along each, rad.
 const FINE: (f64, f64) = (0.01, 0.05);
 
-/// Points of a line on a layer, close enough together that the straight pieces between them follow the layer; for each, the index
-/// of the point of the line whose piece it begins.
+/// Points of a line on a layer, close enough together that the straight pieces between them follow the layer; with each
+/// the index of the original point whose piece it lies on.
 pub(crate) fn followed(points: &[DVec3], closed: bool, sheet: &Sheet<'_>) -> Vec<(DVec3, usize)> {
     let (tolerance, angle) = FINE;
     let mut followed: Vec<(DVec3, usize)> = points.first().map(|first| (*first, 0)).into_iter().collect();
@@ -222,7 +226,8 @@ pub(crate) fn in_space(pass: &Pass, sheet: &Sheet<'_>) -> (Pass, Vec<DVec3>) {
     (Pass { points, width, pace, ..pass.clone() }, at.iter().map(|at| at.normal).collect())
 }
 
-/// A pass from space on its layer: its first point lies within the layer's islands if some turn brings it there.
+/// A pass in space, brought back onto its layer; if some turn puts its first point within the layer's islands, that
+/// turn is used.
 pub(crate) fn on_layer(pass: Pass, sheet: &Sheet<'_>, islands: &[Polygon]) -> Pass {
     let Some(first) = pass.points.first() else { return pass };
     let start = sheet.coordinates(*first, DVec2::ZERO).truncate();

@@ -1,4 +1,4 @@
-//! Which strategy a part is planned with: the profile's, or `wall` where there is nothing but walls for one bead.
+//! Which strategy a part is planned with: the profile's, or `wall` where the part is nothing but walls for one bead.
 
 use super::charted;
 use crate::chart::warp::WarpError;
@@ -15,7 +15,7 @@ use planar::{Join, Polygon, Region};
 /// The profile that a part is planned with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Choice {
-    /// With the chosen strategy.
+    /// The profile with the chosen strategy.
     pub profile: Profile,
     /// Why the strategy differs from the profile's, as a sentence.
     pub note: Option<String>,
@@ -25,9 +25,9 @@ pub struct Choice {
 const HEIGHTS: usize = 15;
 /// Up to this fraction of the area may have room for two beads: thin walls are thicker where they meet.
 const JUNCTIONS: f64 = 0.05;
-/// A wall counts as thicker than the bead if it is this many bead widths thick or more.
+/// A wall counts as thicker than the bead from this thickness, in bead widths.
 const THICKER: f64 = 1.1;
-/// Walls count as thicker than the bead if this fraction of their area is.
+/// Walls count as thicker than the bead if this fraction of their area does.
 const MOSTLY: f64 = 0.8;
 
 /// Chooses the strategy. Curves, and open surfaces that stand for walls, are always welded with `wall`. So is a solid, if the
@@ -70,7 +70,7 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     Ok(Choice { profile, note })
 }
 
-/// Level layers of what begins above the table begin there.
+/// Level layers of a part that begins above the table begin where the part does.
 fn begin_where_it_does(mesh: &Mesh, profile: &mut Profile) {
     let raised = |chart: &Chart, mesh: &Mesh| {
         let low = mesh.bounds().0.z;
@@ -86,10 +86,10 @@ fn begin_where_it_does(mesh: &Mesh, profile: &mut Profile) {
     }
 }
 
-/// What begins no higher than this stands on the table, mm.
+/// A part that begins no higher than this stands on the table, mm.
 const ON_TABLE: f64 = 1e-3;
 
-/// Why `loop` does not fill what it could.
+/// Why `loop` does not fill a part that it could fill.
 const ALL_WALLS: &str = "Strategy wall instead of loop: all of the part is walls for one bead";
 
 /// What fills a solid instead of `loop`, and when the heights of its layers are then predicted; `None` where it stays as it is.
@@ -99,7 +99,7 @@ fn of_solid(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<(Strat
     }
     let mesh = match charted::unrolled(mesh, profile, task) {
         Err(WarpError::Cancelled(cancelled)) => return Err(cancelled),
-        // The plan says why.
+        // The plan reports the reason.
         Err(_) => return Ok(None),
         Ok(mesh) => mesh,
     };
@@ -119,14 +119,14 @@ pub(super) fn is_wall_surface(mesh: &Mesh, profile: &Profile) -> bool {
 /// Walls for one bead.
 #[derive(PartialEq)]
 enum Walls {
-    /// As thick as the bead or thinner: they rise as it does.
+    /// As thick as the bead or thinner: their layers rise as the bead does.
     Thin,
-    /// Thicker than the bead, which is laid wider: they rise as their metal does.
+    /// Thicker than the bead, which is laid wider: their layers rise as their metal does.
     Thick,
 }
 
-/// The kind of walls if a part has room for one bead everywhere and for two hardly anywhere, and can be welded along its
-/// middle.
+/// The kind of walls, if one bead fits everywhere in a part, two hardly anywhere, and the part can be welded along the
+/// middle of its walls; `None` otherwise.
 fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, Cancelled> {
     let (low, high) = mesh.bounds();
     let height = (high.z - low.z) / HEIGHTS as f64;
@@ -135,7 +135,7 @@ fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, C
     let settings = profile.fill_settings(0);
     let slices = slicer.all(task)?;
     let all: f64 = slices.iter().map(Slice::area).sum();
-    // Area with room for a bead that wide.
+    // Area in which a bead of this width fits.
     let holding = |width: f64| -> f64 {
         let room = |slice: &Slice| {
             let region = Region::from_normalised(slice.islands.clone());

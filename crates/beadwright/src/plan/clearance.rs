@@ -1,7 +1,7 @@
 //! Whether the torch has room next to finished parts, where parts are welded one after another.
 //!
-//! Torch and hand fill a cone above the wire's tip ([`TorchShape`]). Parts are as wide as the extents of their layers: more
-//! than they take, never less.
+//! Torch and hand fill a cone above the wire's tip ([`TorchShape`]). Parts are taken to be as wide as the extents of
+//! their layers: never narrower than they are.
 
 use super::{Header, Sink};
 use crate::layer::Layer;
@@ -53,12 +53,12 @@ impl Close {
 }
 
 impl Clearance {
-    /// Begins the next part; those before it are finished.
+    /// Begins the next part; all earlier ones are finished.
     pub fn begin(&mut self, part: &str) {
         self.standing.push((part.to_owned(), Vec::new()));
     }
 
-    /// Takes the next layer of the part, with beads of that width, mm.
+    /// Checks the next layer of the part, with beads of this `width`, mm.
     pub fn layer(&mut self, layer: &Layer, torch: &TorchShape, width: f64) {
         let path = Bounds::of(layer.passes.iter().flat_map(|pass| &pass.points).map(|point| point.truncate()));
         let (Some(path), Some(((welded, own), before))) = (path, self.standing.split_last_mut()) else { return };
@@ -77,12 +77,12 @@ impl Clearance {
         }
     }
 
-    /// Each pair of parts that are too close, at its worst place.
+    /// Each pair of parts that come too close, at its worst place.
     pub fn close(&self) -> &[Close] {
         &self.close
     }
 
-    /// Height of the finished parts, without the one being welded, mm.
+    /// Height of the finished parts, not counting the one being welded, mm.
     pub fn height(&self) -> f64 {
         let before = self.standing.split_last().map_or(&[][..], |(_, before)| before);
         before.iter().flat_map(|(_, slabs)| slabs).map(|(z, _)| *z).fold(0.0, f64::max)
@@ -98,18 +98,18 @@ fn note(close: &mut Vec<Close>, new: Close) {
     }
 }
 
-/// Distance of two extents, mm.
+/// Distance between two extents, mm.
 fn apart(a: &Bounds, b: &Bounds) -> f64 {
     (a.min - b.max).max(b.min - a.max).max(glam::DVec2::ZERO).length()
 }
 
-/// Hands layers on and watches where the torch goes.
+/// Hands layers on and checks where the torch goes.
 pub struct Watch<'a, S> {
-    /// Where the layers go.
+    /// Receives the layers.
     pub sink: &'a mut S,
     /// The finished parts.
     pub clearance: &'a mut Clearance,
-    /// The room that the torch takes.
+    /// Shape of the torch.
     pub torch: TorchShape,
     /// Width of a bead, mm.
     pub width: f64,

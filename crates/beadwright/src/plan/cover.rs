@@ -1,4 +1,4 @@
-//! How much of a slice beads cover, and what they leave bare that matters.
+//! How much of a slice beads cover, and which bare areas matter.
 
 use crate::fill::coverage::Coverage;
 use crate::fill::{Fill, Path};
@@ -14,14 +14,14 @@ use planar::{Join, Polygon, Region};
 pub(super) struct Cover {
     /// mm²
     pub(super) area: f64,
-    /// What matters of the rest: what it is, where, and its area, mm².
+    /// The bare areas that matter: kind, place, and size, mm².
     pub(super) doubts: Vec<(WarningKind, DVec2, f64)>,
 }
 
-/// What beads leave bare is reported when it is more than this part of an island.
+/// Bare area is reported if it is more than this fraction of an island.
 const WORTH_TELLING: f64 = 0.01;
 
-/// A place too thin for a bead counts as welded if less than this part of it is left bare.
+/// A place too thin for a bead counts as welded if less than this fraction of it is left bare.
 const WELDED: f64 = 0.5;
 
 impl Cover {
@@ -37,14 +37,14 @@ impl Cover {
         };
         let mut own = Self::of_island(&coverage, coverage.bare().area, island, profile, reach);
         if is_sparse {
-            // Bare on purpose.
+            // Left bare on purpose.
             own.area = reach.area;
             own.doubts.retain(|(kind, ..)| *kind != WarningKind::Bare);
         }
         own
     }
 
-    /// What the passes of a layer cover of its islands, where it is known what beads reach of them.
+    /// What the passes of a layer cover of its islands, for those whose `reaches` are known.
     pub(super) fn of_layer(layer: &Layer, reaches: &[Option<Reach>], profile: &Profile) -> Self {
         let paths: Vec<Path> = layer.passes.iter().map(path).collect();
         let (paths, whole) = (paths.iter().collect::<Vec<_>>(), Region::from_normalised(layer.islands.clone()));
@@ -85,22 +85,22 @@ impl Cover {
     }
 }
 
-/// A pass in its layer.
+/// A pass as a path on its layer.
 pub(super) fn path(pass: &Pass) -> Path {
     let points = pass.points.iter().map(|p| p.truncate()).collect();
     Path { kind: pass.kind, closed: pass.closed, points, width: pass.width.clone(), reversible: true }
 }
 
-/// Strips along the outline count, too, if they are this part of an island or more.
+/// Strips along the outline count, too, from this fraction of an island.
 const FLANKS_TOO: f64 = 0.02;
 
-/// A bead is so flat over this part of its width that strips of it along the outline make little difference.
+/// A bead slopes so gently over this fraction of its width that strips of it along the outline make little difference.
 const FLANK: f64 = 0.1;
 
 /// A feature of this area or more is reported, in squared bead widths.
 const THIN_FEATURE: f64 = 0.25;
 
-/// Lost pieces end this far, in bead widths, before what a bead reaches: their edges then touch nowhere else.
+/// Lost pieces end this far, in bead widths, from the area that a bead reaches, so that their edges do not touch it.
 const CLEAR: f64 = 0.01;
 
 /// The part of an island that a bead reaches without leaving it.
@@ -118,9 +118,9 @@ impl Reach {
     /// The part of an island that a bead of the given width, mm, reaches.
     ///
     /// That area is the opening of the island by a disc of the bead's width. With C the region inside the outermost
-    /// centre-lines and r half a width, Steiner's formula gives it as long as C is connected like the island; so the shapes
-    /// are computed only at necks, and where this figure shows that something is lost; the area is then too large by a hair,
-    /// [`CLEAR`] along what is lost.
+    /// centre-lines and r half a width, Steiner's formula gives it as long as C has the same connectivity as the
+    /// island. So shapes are computed only at necks, and where this figure shows that something is lost; the area is
+    /// then too large by a hair, [`CLEAR`] along what is lost.
     pub(super) fn of(island: &Polygon, width: f64) -> Self {
         let (r, area) = (width / 2.0, island.area());
         let centre = island.centres_of_disc(r, Join::ROUND);
@@ -136,7 +136,7 @@ impl Reach {
         Self { width, area: (area - lost.area()).max(0.0), lost }
     }
 
-    /// What is too thin for a bead, except corners.
+    /// Places too thin for a bead, except corners.
     fn thin_places(&self) -> impl Iterator<Item = &Polygon> {
         let smallest = THIN_FEATURE * self.width * self.width;
         self.lost.polygons().iter().filter(move |piece| piece.area() > smallest)

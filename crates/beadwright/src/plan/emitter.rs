@@ -1,5 +1,5 @@
-//! Hands filled layers over: puts their passes in order and at their heights, shares out the metal of level layers over what
-//! lies below, keeps the limits of heat, and warns of what a layer cannot be welded on.
+//! Hands filled layers over: puts their passes in order and at their heights, shares out the metal of level layers over
+//! the metal below, keeps the limits of heat, and warns of what a layer cannot be welded on.
 
 use super::charted::Across;
 use super::cover::{Cover, Reach};
@@ -33,14 +33,14 @@ pub(super) struct Emitter<'a, S> {
     pub(super) heat: &'a mut Heat,
     pub(super) memory: order::Memory,
     pub(super) helix: Option<Helix>,
-    /// The first layer of which the helix could make no turn.
+    /// The first layer that could not become a turn of the helix.
     pub(super) no_turn: Option<NoTurn>,
     pub(super) support: Support,
-    /// What the layers so far have built, if metal is shared out over it.
+    /// What has been built so far, if metal is shared out over it.
     pub(super) grown: Option<Stack>,
-    /// Outlines of the layer below, of the islands that are welded.
+    /// Outlines of the welded islands of the layer below.
     pub(super) below: Vec<Polygon>,
-    /// Those of the layer below that one.
+    /// Outlines of the layer below that one.
     pub(super) before: Vec<Polygon>,
     /// Height of the middle of the layer below, mm.
     pub(super) below_middle: f64,
@@ -110,7 +110,7 @@ impl<S: Sink> Emitter<'_, S> {
         self.sink.layer(layer)
     }
 
-    /// Shares out the metal of a level layer, and measures what it covers where `reaches` says what beads reach.
+    /// Shares out the metal of a level layer, and measures what it covers of the islands whose `reaches` are known.
     fn share(&self, layer: &mut Layer, reaches: &[Option<Reach>], wedge: Option<&Wedge<'_>>) {
         let bands = Bands::of_layer(layer, self.profile);
         let of = bands.as_ref().map(|bands| {
@@ -132,10 +132,11 @@ impl<S: Sink> Emitter<'_, S> {
         }
     }
 
-    /// Keeps the limits of `[interpass]`, warns where that is impossible, and widens beads by the heat that they find.
+    /// Keeps the limits of `[interpass]`, warns where that is impossible, and widens beads by the heat of the metal
+    /// below.
     fn warm(&mut self, layer: &mut Layer) {
         let Some(build) = &mut self.heat.build else { return };
-        // Here it is the only one; for the heat it is one of several.
+        // Each body is planned as if it were the only one, but the heat model knows all of them.
         layer.body = self.heat.body;
         let heat = build.layer_within_limits(layer);
         layer.body = 0;
@@ -145,7 +146,7 @@ impl<S: Sink> Emitter<'_, S> {
             place,
             size: 1.0,
         }));
-        // The next layer is ordered from where this one ends.
+        // The next layer is ordered from the point where this one ends.
         self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
         let temperature = |pass: &PassHeat| Temperature { start: pass.start, mean: pass.mean() };
         layer.temperatures = heat.passes.iter().map(temperature).collect();
@@ -156,7 +157,8 @@ impl<S: Sink> Emitter<'_, S> {
         let Some(limits) = self.profile.interpass else { return };
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
             let (place, peak) = heat.peak();
-            // A start is cool, or waiting does not help: that is another warning. A helix begins its turns as hot as they are.
+            // Otherwise the start is too hot even after waiting, which is another warning. A helix cannot wait between
+            // its turns.
             let is_asked = heat.start <= limits.max_temperature + NOISE || layer.lit.is_turn();
             if is_asked && peak > limits.max_temperature + NOISE {
                 let place = place_on(pass, place as f64 * build.spacing());
@@ -174,7 +176,7 @@ impl<S: Sink> Emitter<'_, S> {
         }
     }
 
-    /// Warns of what a layer cannot be welded on, and of what a controller may refuse.
+    /// Warns of metal that a layer cannot be welded on, and of what a controller may refuse.
     fn doubts(&mut self, layer: &mut Layer) {
         let (profile, index) = (self.profile, layer.index);
         let limits = &profile.check;
@@ -194,7 +196,7 @@ impl<S: Sink> Emitter<'_, S> {
             if gap > LARGE_GAP * layer.height && !stands(first) {
                 let kind = if self.metrics.passes == 0 { WarningKind::HighStart } else { WarningKind::NothingBelow };
                 doubt(kind, first.start().unwrap_or_default().truncate(), gap);
-                // It says the same of the whole layer.
+                // The gap concerns the whole layer, so these warnings would only repeat it.
                 layer
                     .warnings
                     .retain(|warning| !matches!(warning.kind, WarningKind::InTheAir | WarningKind::OverUnwelded));
@@ -212,7 +214,7 @@ impl<S: Sink> Emitter<'_, S> {
             doubt(WarningKind::ManyPoints, DVec2::ZERO, points as f64);
         }
         let soonest = profile.soonest_arc_end();
-        // A dot takes as long as it took in the trial.
+        // Dots take the time that their trial took, however short.
         let unsteady = |pass: &&Pass| pass.kind != PassKind::Spot && pass.seconds(&profile.process) < 0.999 * soonest;
         for pass in layer.passes.iter().filter(unsteady) {
             doubt(WarningKind::ShortArc, pass.start().unwrap_or_default().truncate(), pass.length());
@@ -221,7 +223,7 @@ impl<S: Sink> Emitter<'_, S> {
     }
 }
 
-/// What is laid on a layer, in order and at its height; top and thickness of the layer, mm.
+/// The passes of a layer, in order and at their height, from its top and thickness, mm.
 pub(super) fn passes(
     fills: Vec<Fill>,
     layer: usize,
@@ -247,11 +249,11 @@ pub(super) fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64
     paths.into_iter().map(lift).collect()
 }
 
-/// The place at a distance along a pass, mm, seen from above.
+/// The place at a distance `way` along a pass, mm, seen from above.
 fn place_on(pass: &Pass, way: f64) -> DVec2 {
     let line = pass.line();
     planar::polyline::point_at(&line, way).or(line.first().copied()).unwrap_or_default()
 }
 
-/// A gap below a layer counts if it is this part of its thickness or more.
+/// A gap below a layer is reported from this fraction of the layer's thickness.
 const LARGE_GAP: f64 = 0.25;

@@ -3,23 +3,24 @@
 use crate::model::Mesh;
 use crate::profile::Profile;
 
-/// Path in a layer, in bead widths, beyond which strategies that weigh every place of a layer (`loop`) take minutes.
+/// Path length of a layer, in bead widths, beyond which strategies that weigh every place of a layer (`loop`) take
+/// minutes.
 const LONG_LAYER: f64 = 25_000.0;
-/// Path of the whole plan, in bead widths: files of a hundred megabytes.
+/// Path length of the whole plan, in bead widths, beyond which files take hundreds of megabytes.
 const LONG_PLAN: f64 = 5e7;
 
-/// What a solid will take if beads fill it one stepover apart.
+/// Size of the plan of a solid, if beads fill it one stepover apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Expected {
     /// Number of layers.
     pub layers: f64,
     /// Length of the beads of a layer, on average, mm.
     pub layer_length: f64,
-    /// Whether it is so large that it is rarely intended.
+    /// Whether the plan is so large that it is rarely intended.
     pub large: bool,
 }
 
-/// What a solid will take; `None` where its volume is not known, since the surface is not closed.
+/// The expected plan of a solid; `None` where its volume is unknown because its surface is not closed.
 ///
 /// ```
 /// use beadwright::{Profile, example, plan::expected};

@@ -24,20 +24,21 @@ pub(super) struct Filled {
     pub(super) slice: Slice,
     pub(super) fills: Vec<Fill>,
     pub(super) planned_area: f64,
-    /// Of each island what beads reach, as long as its cover is not known: it is measured once the metal is shared out.
+    /// For each island the area that beads reach, as long as its cover is not known: it is measured once the metal is
+    /// shared out.
     pub(super) reaches: Vec<Option<Reach>>,
-    /// Number of warnings that the slice came with.
+    /// Number of warnings that came with the slice.
     pub(super) known: usize,
     /// Whether an island is filled with a helix.
     pub(super) has_helix: bool,
-    /// What lies in this layer of the part that is milled from it.
+    /// Where the milled part lies in this layer of its preform.
     pub(super) milled: Option<Region>,
     /// Whether other layers have the same passes.
     pub(super) shared: bool,
 }
 
-/// Fills a batch of slices in parallel; `datum` is the place of the part. Slices of the same shape are filled together:
-/// prismatic parts once where the strategy lays the same on every layer, and a few times where layers alternate.
+/// Fills a batch of slices in parallel; `datum` is the reference point of the part. Slices of the same shape are filled
+/// together: all layers of a prismatic part at once, or a few groups where layers alternate.
 pub(super) fn fill_batch(
     batch: Vec<Planned>,
     strategy: &dyn Strategy,
@@ -56,10 +57,10 @@ pub(super) fn fill_batch(
     Ok(filled)
 }
 
-/// The slices of a batch, grouped by what is filled together.
+/// The slices of a batch, grouped into those that can be filled together.
 fn groups(batch: &[Planned], strategy: &dyn Strategy, profile: &Profile) -> Vec<Vec<usize>> {
     let settings = |i: usize| FillSettings { layer: 0, ..settings_of(&batch[i], profile) };
-    // Short passes are recognised by the time that they take.
+    // Whether a pass is too short depends on the time that it takes.
     let rate = |i: usize| profile.process.at_layer(batch[i].slice.index).rate();
     let period = if strategy.repeats() { Some(1) } else { strategy.period() };
     let turn = |i: usize| period.map_or(batch[i].slice.index, |period| batch[i].slice.index % period);
@@ -119,14 +120,14 @@ fn settings_of<'a>(layer: &'a Planned, profile: &'a Profile) -> FillSettings<'a>
     settings
 }
 
-/// Fills a slice; `datum` is the place of the part.
+/// Fills a slice; `datum` is the reference point of the part.
 pub(super) fn fill_planned(layer: &Planned, strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Filled {
     let settings = FillSettings { datum, ..settings_of(layer, profile) };
     let fill = |_: usize, island: &Polygon| strategy.fill(island, &settings);
     fill_layer(layer.slice.clone(), fill, strategy, profile, &settings)
 }
 
-/// Fills a slice; `fill` gives what the strategy lays into the island with a number.
+/// Fills a slice; `fill` gives what the strategy lays into an island, by the island's index.
 fn fill_layer(
     mut slice: Slice,
     fill: impl Fn(usize, &Polygon) -> Fill,
@@ -204,8 +205,8 @@ fn sound_fill(
     fill
 }
 
-/// Where the passes of a strategy cannot be welded: they leave the island or cross. An island with room for two beads side
-/// by side that was left empty counts too.
+/// The first place where the passes of a strategy cannot be welded: they leave the island, or cross, or leave an island
+/// empty in which two beads fit side by side.
 fn unsound(fill: &Fill, island: &Polygon, settings: &FillSettings, reached: f64) -> Option<DVec2> {
     let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
     if paths.is_empty() {
@@ -217,7 +218,7 @@ fn unsound(fill: &Fill, island: &Polygon, settings: &FillSettings, reached: f64)
     })
 }
 
-/// Leaves out passes that are too short to weld, except one to be kept, with a warning.
+/// Leaves out passes that are too short to weld, with a warning; `keep` spares one of them.
 pub(super) fn drop_short(
     stage: &mut Vec<Path>,
     kept: Option<&Path>,
@@ -228,7 +229,7 @@ pub(super) fn drop_short(
     stage.retain(|pass| {
         let length = pass.length();
         let keep = kept == Some(pass) || is_long_enough(pass, profile, layer);
-        // A zigzag that touches a corner with a line of no length loses nothing.
+        // A zigzag that touches a corner with a line of almost no length loses nothing.
         if !keep && length > 0.1 * profile.fill.min_pass_length {
             let place = pass.points.first().copied().unwrap_or_default();
             warnings.push(Warning { kind: WarningKind::PassTooShort, layer, place, size: length });
@@ -237,13 +238,13 @@ pub(super) fn drop_short(
     });
 }
 
-/// Whether a pass is long enough to be welded, and its arc is steady before it is over.
+/// Whether a pass is long enough to be welded, and takes longer than its arc needs to become steady.
 fn is_long_enough(pass: &Path, profile: &Profile, layer: usize) -> bool {
     let is_long = pass.points.len() >= 2 && pass.length() >= profile.fill.min_pass_length;
     is_long && arc_time(pass, profile, layer) >= profile.soonest_arc_end()
 }
 
-/// The dot that fills an island with its allowance, if one fits.
+/// The dot that fills an island with its allowance; `None` if none fits.
 fn dot_in(island: &Polygon, profile: &Profile, height: f64, dot: &Dot) -> Option<Path> {
     match island.offset(profile.fill.machining_allowance, Join::ROUND).polygons() {
         [grown] => dot::dot(grown, height, dot),
@@ -251,11 +252,11 @@ fn dot_in(island: &Polygon, profile: &Profile, height: f64, dot: &Dot) -> Option
     }
 }
 
-/// A short pass without which an island stays empty is at least this long, in bead widths.
+/// A short pass that is the only one of an island is kept from this length, in bead widths.
 const ALONE: f64 = 0.25;
 
-/// The longest pass of an island whose passes are all shorter than `fill.min_pass_length`, if it can be welded at all: what
-/// lies above needs its metal.
+/// The longest pass of an island whose passes are all shorter than `fill.min_pass_length`, if it can be welded at all:
+/// the layers above need its metal.
 fn short_but_alone(fill: &Fill, profile: &Profile, layer: usize) -> Option<Path> {
     let longest = fill.stages.iter().flatten().max_by(|a, b| a.length().total_cmp(&b.length()))?;
     let is_short = (ALONE * profile.bead.width..profile.fill.min_pass_length).contains(&longest.length());

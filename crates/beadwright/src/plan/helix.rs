@@ -1,9 +1,9 @@
 //! One helix in place of closed walls: every layer is a turn that rises from the layer below, with one arc start for all.
 //!
-//! The first turn lies level on the plate. The second one rises, so it has no room where it begins and a whole layer's where
-//! it ends: it lays as much metal as that room takes, and a last, level turn fills what the ramp leaves below the top. No
-//! piece gets less than [`Lit::LEAST`] of a bead, so the second turn begins with too much metal, and the last one ends early
-//! by as much.
+//! The first turn lies level on the plate. The second one rises, so the gap below it grows from nothing at its start to
+//! a whole layer at its end, and it lays the metal that this gap takes. A last, level turn fills what the ramp leaves
+//! below the top. No piece gets less than [`Lit::LEAST`] of a bead, so the second turn begins with too much metal, and
+//! the last one ends early by as much.
 
 use crate::layer::{Layer, Lit};
 use crate::pass::{Along, Pass, PassKind, Segment};
@@ -13,11 +13,11 @@ use planar::polyline;
 
 /// Pieces are at most this long, in bead widths, so that they follow the turn below.
 const PIECE: f64 = 2.0;
-/// Points of the next two turns, as a multiple of those of one: each may have a fifth more than the one before. Where a
-/// program has no room for them, the arc goes out, so no turn is ever alone.
+/// Points of the next two turns together, as a multiple of those of the present one: each may have a fifth more than
+/// the one before. Where a program cannot hold them, the arc goes out, so that no turn is ever alone.
 const NEXT_TWO: f64 = 1.2 + 1.2 * 1.2;
 
-/// A layer of which no turn can be made.
+/// A layer that cannot become a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NoTurn {
     /// Index of the layer.
@@ -29,14 +29,14 @@ pub(super) struct NoTurn {
 /// The helix so far.
 #[derive(Debug, Clone)]
 pub(super) struct Helix {
-    /// How many layers there are, and the most points of a pass that a program holds.
+    /// The number of layers, and the greatest number of points of a pass in a program.
     layers: usize,
     longest: Option<usize>,
-    /// The closed line of the last turn, its top, and where the torch is.
+    /// The closed line of the last turn, its top (mm), and the position of the torch.
     below: Option<(Vec<DVec2>, f64, DVec2)>,
     /// Number of turns.
     turns: usize,
-    /// Whether the arc is on, and how many points it has laid since it was struck.
+    /// Whether the arc is on, and the number of points laid since it was struck.
     lit: bool,
     points: usize,
 }
@@ -45,7 +45,7 @@ pub(super) struct Helix {
 #[derive(Clone, Copy)]
 struct Place {
     at: DVec2,
-    /// Part of the turn that lies before it.
+    /// Fraction of the turn that lies before it.
     part: f64,
     width: f64,
     pace: f64,
@@ -56,7 +56,7 @@ impl Helix {
         Self { layers, longest, below: None, turns: 0, lit: false, points: 0 }
     }
 
-    /// Makes a turn of the only pass of a layer.
+    /// Turns the only pass of a layer into a turn of the helix.
     ///
     /// # Errors
     /// [`NoTurn`] where it is not one closed wall, or too long for a program.
@@ -64,7 +64,7 @@ impl Helix {
         let (index, count) = (layer.index, layer.passes.len());
         let none = |why: String| Err(NoTurn { layer: index, why });
         let [pass] = &mut layer.passes[..] else { return none(format!("it has {count} passes")) };
-        // A loop of two beads is one closed pass, too.
+        // A loop of two beads is a single closed pass, too.
         if !pass.closed || pass.kind != PassKind::Wall || pass.points.len() < 3 {
             return none("its pass is open, or is not a single bead along a wall".to_owned());
         }
@@ -118,7 +118,7 @@ struct Turn {
 }
 
 impl Turn {
-    /// Adds a place at a height, with a part of a bead's metal from there on.
+    /// Adds a place at a height (mm); from there on the piece gets `share` of a bead's metal.
     fn add(&mut self, at: DVec2, z: f64, place: &Place, share: f64) {
         self.points.push(at.extend(z));
         self.widths.push(place.width);
@@ -131,8 +131,8 @@ impl Turn {
     }
 }
 
-/// The places of a closed pass, once around to the left from where it comes nearest to `torch` back to there, at most `step`
-/// apart (mm).
+/// Places at most `step` (mm) apart along a closed pass: once around counter-clockwise, from the point nearest to
+/// `torch` back to it.
 fn places(pass: &Pass, torch: Option<DVec2>, step: f64) -> Vec<Place> {
     let mut pieces: Vec<Segment> = pass.segments().filter(|s| s.length() > 0.0).collect();
     // Ordering may reverse passes; every turn of a helix continues in the same direction.
@@ -175,7 +175,7 @@ fn places(pass: &Pass, torch: Option<DVec2>, step: f64) -> Vec<Place> {
     places
 }
 
-/// The place of a closed line that is nearest to a point.
+/// The point of a closed line that is nearest to a given point.
 fn nearest(ring: &[DVec2], to: DVec2) -> DVec2 {
     let on = |pair: &[DVec2]| polyline::closest_on_segment(to, pair[0], pair[1]);
     let closer = |a: &DVec2, b: &DVec2| a.distance_squared(to).total_cmp(&b.distance_squared(to));

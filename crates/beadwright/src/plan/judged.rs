@@ -10,7 +10,7 @@ use glam::DVec3;
 use planar::Bounds;
 use std::borrow::Cow;
 
-/// A layer as its chart shows it: where it is a wedge, with the metal of a layer of even thickness.
+/// A layer as its chart shows it; a wedge gets the metal of a layer of even thickness.
 pub fn even<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
     let Some(wedge) = profile.layers.wedge(layer) else { return Cow::Borrowed(layer) };
     let mut even = layer.clone();
@@ -24,8 +24,8 @@ pub fn welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
     then(then(even(layer, profile), profile, as_welded), profile, unrolled_once)
 }
 
-/// The same for a judgement of the layer alone, which knows one height of beads only: the two layers of a pair are judged as if
-/// each were of that.
+/// The same for judging the layer alone, when only one bead height is possible: each layer of a pair is judged as if it
+/// were that high.
 pub fn welded_alone<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
     let mut welded = welded(layer, profile);
     if let Some(wedge) = profile.layers.wedge(layer).filter(|_| layer.half.is_some()) {
@@ -34,7 +34,7 @@ pub fn welded_alone<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
     welded
 }
 
-/// A layer changed once more, if the change is one.
+/// Applies one more change to a layer, unless it changes nothing.
 fn then<'a>(
     layer: Cow<'a, Layer>,
     profile: &Profile,
@@ -59,7 +59,7 @@ fn as_welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
 pub fn deposit_settings(profile: &Profile) -> DepositSettings {
     let (bead, pace) = (profile.bead(), profile.process.deposition_speed);
     let nominal = Nominal { bead, pace, rise: bead.rise(profile.stepover()) };
-    // Bodies lie over one another only in space.
+    // Layers of several bodies lie over one another only in space.
     let over_one_another = profile.layers.bodies.len() < 2 && !profile.layers.charts().any(Chart::goes_around);
     DepositSettings { over_one_another, ..DepositSettings::new(nominal, profile.fill.machining_allowance) }
 }

@@ -1,9 +1,9 @@
 //! Where the layers of a wall lie: as high as its beads grow (Li et al., section 1.2).
 //!
-//! Where a wall leans by φ from the build direction, a bead h_n away from the one below lies h_n cos φ above it. The lean
-//! is taken point by point, between neighbouring layers. A layer stays level, so it rises by what the points that lean most
-//! allow: nowhere is a bead farther than h_n from the one below. Each piece of its path is paced by the width of the wall
-//! there: where the wall leans more, a level layer cuts it wider and takes more metal.
+//! Where a wall leans by φ from the build direction, a bead h_n away from the one below lies h_n cos φ above it. The
+//! lean is measured point by point between neighbouring layers. A layer stays level, so its rise is limited by its most
+//! leaning points: nowhere is a bead farther than h_n from the one below. Each piece of its path is paced by the width
+//! of the wall there: where the wall leans more, a level layer cuts it wider and takes more metal.
 
 use crate::bead::wall::WallBead;
 use crate::model::Mesh;
@@ -19,13 +19,13 @@ use glam::DVec2;
 use planar::Ring;
 use rayon::prelude::*;
 
-/// A wall is not taken to lean more than this, radians (60°): steeper places are shoulders and floors, not walls.
+/// Greatest lean of a wall, radians (60°): steeper places are shoulders and floors, not walls.
 const MOST_LEAN: f64 = std::f64::consts::FRAC_PI_3;
 
-/// Points of an outline at which its lean is measured.
+/// Number of points of an outline at which its lean is measured.
 const POINTS: usize = 64;
 
-/// One in this many points may lean more than the layer's rise allows for.
+/// One in this many points may lean more than the rise of the layer allows for.
 const ASIDE: usize = 20;
 
 /// The layers of a mesh wall that is placed on z = 0.
@@ -72,7 +72,7 @@ pub(super) fn of_mesh(
     Ok(stacked(top, wall, warmth, rise))
 }
 
-/// How much a layer rises that leans by these angles (radians) at its points, mm: h_n cos φ with the greatest of them,
+/// The rise of a layer that leans by these angles (radians) at its points, mm: h_n cos φ with the greatest angle,
 /// except for a few points, which may lie on a corner or an edge.
 fn rise(wall: &WallBead, leans: impl Iterator<Item = f64>) -> f64 {
     let mut leans: Vec<f64> = leans.map(|lean| lean.min(MOST_LEAN)).collect();
@@ -96,7 +96,7 @@ fn of_sections(lines: Lines) -> Vec<Vec<DVec2>> {
     lines.sections.into_iter().map(line).collect()
 }
 
-/// Points at equal distances along a line.
+/// Evenly spaced points along a line.
 fn evenly(line: &[DVec2]) -> Vec<DVec2> {
     let length = planar::polyline::length(line);
     (0..POINTS).filter_map(|k| planar::polyline::point_at(line, length * k as f64 / POINTS as f64)).collect()
@@ -114,7 +114,7 @@ pub(super) fn of_curves(curves: &WallCurves, height: f64, wall: &WallBead, warmt
     stacked(height, wall, warmth, |z| rise(wall, curves.leans(z - half, z + half).into_iter().map(|(_, lean)| lean)))
 }
 
-/// How centre-lines lean within a layer: places, and the angle from the build direction there, radians.
+/// How much centre-lines lean within a layer: places, and the angle from the build direction there, radians.
 pub(super) fn leans(curves: &WallCurves, slab: Slab) -> Vec<(DVec2, f64)> {
     curves.leans(slab.z - slab.height, slab.z)
 }
@@ -125,8 +125,8 @@ pub(super) fn lean_at(leans: &[(DVec2, f64)], at: DVec2) -> f64 {
     nearest.map_or(0.0, |(_, lean)| lean.min(MOST_LEAN))
 }
 
-/// The first layer is as high as the first bead; each further one rises by what `rise` gives for its middle, mm, and less
-/// where it is warm, until the top is nearest.
+/// The first layer is as high as the first bead; each further one rises by what `rise` gives for its middle, mm,
+/// changed where the metal is warm, until the nearest to the top.
 fn stacked(top: f64, wall: &WallBead, warmth: &Warmth, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
     let mut slabs = vec![Slab { z: wall.height(), height: wall.height() }];
     let mut z = wall.height();

@@ -1,4 +1,4 @@
-//! Whether metal lies wherever the part will be that is milled from a preform.
+//! Whether there is metal everywhere in the part that is milled from a preform.
 
 use super::cover::path;
 use crate::fill::Path;
@@ -13,18 +13,18 @@ use planar::{Join, Region};
 
 /// The part in a preform, cut by the layers of the preform.
 pub(super) struct Milled<'a> {
-    /// Cuts just inside the lower and the upper end of each layer.
+    /// Cuts just inside the bottom and the top of each layer.
     ends: [Slicer<'a>; 2],
 }
 
-/// A layer is cut this far inside its ends, as part of its thickness.
+/// A layer is cut this far inside its bottom and top, as a fraction of its thickness.
 const INSIDE: f64 = 1e-3;
 
 /// Missing metal is reported when it is more than this, in squared bead widths.
 const WORTH_REPORTING: f64 = 0.02;
 
 impl<'a> Milled<'a> {
-    /// The part, placed as it lies in its preform, which has these layers.
+    /// The part, placed in its preform, which has these layers.
     ///
     /// # Errors
     /// [`Cancelled`] when the task was.
@@ -57,7 +57,7 @@ impl<'a> Milled<'a> {
     }
 }
 
-/// What of the part's faces in a layer lies outside all beads.
+/// The area of the part's faces in a layer that no bead covers.
 pub(super) fn undersize(layer: &Layer, part: &Region, profile: &Profile) -> Option<Warning> {
     let width = profile.bead.width;
     let paths: Vec<Path> = layer.passes.iter().map(path).collect();

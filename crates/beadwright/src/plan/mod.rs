@@ -1,4 +1,4 @@
-//! The front door: a mesh and a profile become a [`Plan`], layer by layer in deposition order.
+//! The entry point: a mesh and a profile become a [`Plan`], layer by layer in deposition order.
 //!
 //! [`plan_into`] streams: each finished layer goes to a sink and is forgotten, so a part of thousands of layers
 //! needs the memory of the mesh plus [`BATCH`] layers. [`plan`] collects the layers. A wall may
@@ -14,7 +14,7 @@
 //! | `charted` | parts whose layers are not level |
 //! | `candidates` | what fills an island that its strategy cannot |
 //! | [`choice`] | which strategy a part is planned with |
-//! | `emitter` | hands layers over, in order, with the limits of heat and warnings |
+//! | `emitter` | hands layers over in order, within the limits of heat, with warnings |
 //! | [`expected`](expected()) | roughly how much a plan will contain |
 //! | `cover` | how much of a slice beads cover, and what they leave bare |
 //! | `filled` | a slice with its passes |
@@ -22,16 +22,16 @@
 //! | `helix` | one helix in place of closed walls |
 //! | `level_layers` | layers of solids as high as their metal, which is shared out within them |
 //! | `levels` | where the layers of a wall lie |
-//! | `milled` | whether metal lies wherever the part will be that is milled from a preform |
+//! | `milled` | whether there is metal everywhere in the part that is milled from a preform |
 //! | `result` | what a plan is, where its layers go, why there may be none |
-//! | `row` | the layers of parts or bodies that are welded one after another, as those of one plan |
+//! | `row` | the layers of parts or bodies that are welded one after another, as one plan |
 //! | `reasons` | why a plan's volume differs from the part's, or is nothing |
 //! | [`preview`] | one layer ahead of the others |
 //! | `turns` | passes that go around an axis more than once |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
-//! | [`stock`] | a part becomes its preform, which is planned in its place |
+//! | [`stock`] | turns a part into its preform, which is planned instead |
 //! | `support` | whether passes lie on the metal below |
-//! | `wedges` | where layers lie that are thicker at some places than at others |
+//! | `wedges` | where layers of varying thickness lie |
 //! | `scan_lines` | best raster angles, and which parts of a sparse infill are solid |
 
 mod beside;
@@ -98,7 +98,7 @@ use std::convert::Infallible;
 use support::{Footing, Support};
 use warm::{Heat, Warmth};
 
-/// No plan has more layers than this.
+/// Maximum number of layers of a plan.
 pub const MAX_LAYERS: usize = 100_000;
 
 /// Plans a part placed on z = 0, either a solid or a wall given by curves, and keeps all layers. `name` is used
@@ -159,23 +159,23 @@ pub fn plan_into<'a, S: Sink + Send>(
     Ok(summary)
 }
 
-/// What a part or a body of it begins on.
+/// What a part, or one of its bodies, begins on.
 struct Start<'a> {
     /// How its layers rise.
     warmth: &'a Warmth,
     footing: Footing,
-    /// The heat of those before; `None` on a cold plate.
+    /// The heat of those welded earlier; `None` on a cold plate.
     heat: Option<&'a mut Heat>,
 }
 
 impl<'a> Start<'a> {
-    /// The only body of a part; `heat` where its layers are not level.
+    /// The only body of a part, with `heat` where its layers are not level.
     fn alone(warmth: &'a Warmth, heat: Option<&'a mut Heat>) -> Self {
         Self { warmth, footing: Footing::PLATE, heat: heat.map(|heat| heat.before(0, warmth)) }
     }
 }
 
-/// Plans a part from its start on.
+/// Plans a part from its start.
 fn plan_at<S: Sink + Send>(
     start: Start,
     name: &str,
@@ -222,7 +222,7 @@ fn plan_mesh<S: Sink + Send>(
 ) -> Result<Summary, PlanError<S::Error>> {
     let opening = holes::openings(mesh).into_iter().next();
     let wide = opening.filter(|opening| opening.width > profile.bead.width);
-    // Around an axis the part itself was looked at.
+    // Around an axis the part itself has already been checked.
     let unsaid = profile.slice.surface.is_none() && profile.layers.chart.is_level();
     if let Some(Opening { width, place, .. }) = wide.filter(|_| unsaid) {
         return Err(PlanError::Open { width, place });
@@ -276,7 +276,7 @@ fn plan_mesh<S: Sink + Send>(
     Ok(summary)
 }
 
-/// A contour that does not close and is longer than this, in bead widths, is a part of the solid that would be missing.
+/// An open contour longer than this, in bead widths, would leave part of the solid missing.
 const TORN: f64 = 4.0;
 
 /// The middle of a part, seen from above.
@@ -300,7 +300,7 @@ pub fn slabs<'a>(
     slabs_of(&warm::predicted(part, profile, task)?, part, profile, task)
 }
 
-/// Where the layers of a part with this warmth lie.
+/// Where the layers of a part lie, with this warmth.
 fn slabs_of<E>(warmth: &Warmth, part: PartRef, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
     match part {
         PartRef::Mesh { mesh, .. } => slabs_at(warmth, mesh, profile, task),
@@ -311,7 +311,7 @@ fn slabs_of<E>(warmth: &Warmth, part: PartRef, profile: &Profile, task: &Task) -
     }
 }
 
-/// Where the layers of a mesh with this warmth lie.
+/// Where the layers of a mesh lie, with this warmth.
 fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
     check_layer_count(mesh, profile)?;
     let slabs = match profile.wall_bead()? {
@@ -427,7 +427,7 @@ fn run<S: Sink + Send>(
     Ok(Summary { metrics, warnings, notes, forbidden })
 }
 
-/// Why a helix that was asked for is not there.
+/// Why there is no helix, though one was asked for.
 const NO_HELIX: &str = "No layer is laid as a helix (fill.around): its islands must go all around the axis of a cylinder, between two \
                         edges that are rings, with room for whole beads and without holes, the strategy must not be wall, and the \
                         positioner must be able to turn as often as there are rings.";

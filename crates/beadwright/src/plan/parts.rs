@@ -1,4 +1,5 @@
-//! Parts that are welded one after another: one plan, whose layers are those of the first part, then of the second, and so on.
+//! Parts that are welded one after another, as one plan: the layers of the first part, then those of the second, and so
+//! on.
 
 use super::clearance::{Clearance, Close, Watch};
 use super::row::{NUMBERED_APART, Row};
@@ -56,10 +57,10 @@ pub fn parts_into<S: Sink + Send>(
     Ok(summary)
 }
 
-/// The room that the torch of a profile takes.
+/// The shape of a profile's torch.
 ///
 /// # Errors
-/// [`PlanError::Parts`] where the profile does not say.
+/// [`PlanError::Parts`] where the profile lacks it.
 pub fn torch_of<E>(profile: &Profile) -> Result<TorchShape, PlanError<E>> {
     profile
         .torch

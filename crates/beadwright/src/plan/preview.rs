@@ -1,4 +1,4 @@
-//! One layer ahead of the others, to look at while the rest is planned.
+//! One layer planned ahead of the others, to look at while the rest is planned.
 
 use super::centre_lines::{centre_lines, weld_curves};
 use super::emitter::Emitter;
@@ -16,9 +16,9 @@ use crate::task::Task;
 use crate::warning::Warnings;
 use std::convert::Infallible;
 
-/// Layer `index` (from 0; the top one where there are fewer) of a part's plan, as if the torch began with it. It may differ
-/// from the layer in the whole plan only in start points and order, in what heat changes, and in the metal that level layers
-/// get for what the layers below have built.
+/// Layer `index` of a part's plan (from 0; the top one if there are fewer), planned as if the torch began with it. It
+/// may differ from the same layer in the whole plan only in start points and order, in what heat changes, and in the
+/// metal that level layers get for what the layers below have built.
 ///
 /// # Errors
 /// [`PlanError`].
@@ -47,7 +47,7 @@ pub fn preview(
         torch: None,
         heat: &mut Heat::default(),
         memory: Memory::default(),
-        // A single layer is not a turn.
+        // A single layer cannot be a turn of a helix.
         helix: None,
         no_turn: None,
         support: Support::default(),
@@ -72,7 +72,7 @@ fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<
     let slicer = Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?
         .on(&profile.layers.chart)
         .no_thicker_than(profile.layers.window().1);
-    // Slices are numbered in the window; a sparse infill looks at its neighbours there.
+    // Slices are numbered within the window; a sparse infill depends on its neighbours there.
     let planned = scan_lines::planned(0, &slicer, strategy, profile, task)?;
     let layer = planned.into_iter().nth(index - window.first).map(|mut layer| {
         layer.slice.index = index;
@@ -87,9 +87,9 @@ struct Window<'a> {
     slabs: &'a [Slab],
 }
 
-/// The layers that a layer's fill depends on. They begin at an even layer, since best angles are chosen for pairs.
+/// The layers that a layer's fill depends on, from an even index on, since best angles are chosen for pairs.
 fn window<'a>(slabs: &'a [Slab], index: usize, profile: &Profile) -> Window<'a> {
-    // A part layer lies in the next one.
+    // The lower layer of a pair is filled up by the next one.
     let pair = usize::from(profile.fill.raster_turn == RasterTurn::Best || profile.layers.chart.has_wedges());
     let solid = if profile.fill.infill_density < 1.0 { profile.fill.solid_layers as usize } else { 0 };
     let reach = solid.min(BATCH / 2 - 1);

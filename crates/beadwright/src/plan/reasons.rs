@@ -6,8 +6,8 @@ use crate::profile::Profile;
 use crate::slice::{self, LayerFit, Slab};
 use crate::warning::{WarningKind, WarningSummary};
 
-/// Why the volume of the slices differs from the mesh's, as a sentence where it matters; `left` says whether the layers end
-/// elsewhere than the part.
+/// Why the volume of the slices differs from the mesh's, as a sentence; `None` where that does not matter. `left` says
+/// whether the layers end elsewhere than the part.
 pub(super) fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<String> {
     /// Fraction of the mesh's volume.
     const WORTH_TELLING: f64 = 0.01;
@@ -32,7 +32,7 @@ pub(super) fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<S
     Some(format!("The slices hold {:.2} cm³, the mesh {:.2} cm³ ({percent:+.1} %): {why}.", slices / 1e3, mesh / 1e3))
 }
 
-/// Why a solid gives no passes: what was dropped on the way, or its width.
+/// Why a solid gives no passes: what was dropped on the way, or that it is too narrow.
 pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> String {
     let warned = |kind| summary.warnings.summaries().find(|w| w.kind == kind).map(WarningSummary::sentence);
     let size = mesh.size();
@@ -58,7 +58,7 @@ pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> St
     }
 }
 
-/// How far the last layer ends below or above the part, as a sentence where it matters.
+/// How far the last layer ends below or above the part, as a sentence; `None` where that does not matter.
 pub(super) fn left_over(mesh: &Mesh, slabs: &[Slab], profile: &Profile) -> Option<String> {
     /// Fraction of the height.
     const WORTH_TELLING: f64 = 0.005;
@@ -69,7 +69,7 @@ pub(super) fn left_over(mesh: &Mesh, slabs: &[Slab], profile: &Profile) -> Optio
     }
     let layers = if slabs.len() == 1 { "its layer ends".to_owned() } else { format!("its {} layers end", slabs.len()) };
     let ends = format!("The part is {top:.2} mm high, but {layers} at {last:.2} mm");
-    // Layers of walls are as high as their metal, whatever layers.fit says.
+    // Layers of walls are as high as their metal, whatever layers.fit is.
     let as_set = slabs.iter().all(|slab| (slab.height - profile.layers.height).abs() < 1e-6);
     Some(if last < top && !as_set {
         format!("{ends}: the upper {left:.2} mm ({percent:.1} %) are not built.")

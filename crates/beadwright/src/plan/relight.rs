@@ -6,10 +6,10 @@ use crate::pass::Pass;
 use crate::profile::Profile;
 use crate::warning::{Warning, WarningKind};
 
-/// Passes of fewer moves than this are never cut: their number is not even counted.
+/// Passes of fewer moves than this are never cut; their instructions are not even counted.
 const LEAST: usize = 10;
 
-/// Cuts the passes of a layer that have more moves than a program holds, and warns of each.
+/// Cuts the passes of a layer that have more moves than a program can hold, and warns of each.
 pub(super) fn relight(layer: &mut Layer, profile: &Profile) {
     let Some(most) = profile.longest_pass() else { return };
     let cut = |pass: Pass| if pass.points.len() + LEAST <= most { vec![pass] } else { pieces(pass, most, profile) };
@@ -37,14 +37,14 @@ fn pieces(pass: Pass, most: usize, profile: &Profile) -> Vec<Pass> {
         .unwrap_or_else(|| vec![pass])
 }
 
-/// How many instructions a program needs for a pass.
+/// Number of instructions that a program needs for a pass.
 fn instructions(pass: &Pass, profile: &Profile) -> usize {
     let layer = Layer { passes: vec![pass.clone()], ..Layer::default() };
     profile.programmer().layer(&layer).instructions.len()
 }
 
-/// A pass cut into open pieces of equal length, each of which begins `overlap` (mm) before the end of the one before; what
-/// was closed ends as far beyond its start.
+/// A pass cut into open pieces of equal length, each of which begins `overlap` (mm) before the end of the one before;
+/// the last piece of a closed pass ends that far beyond its start.
 fn equal_pieces(pass: &Pass, count: usize, overlap: f64) -> Vec<Pass> {
     let (length, around) = (pass.length(), if pass.closed { overlap } else { 0.0 });
     let at = |k: usize| length * k as f64 / count as f64;

@@ -13,7 +13,7 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 
-/// What is the same for all layers of a plan.
+/// What all layers of a plan have in common.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Name of the part, for files and headings.
@@ -22,14 +22,14 @@ pub struct Header {
     pub profile: String,
     /// Name of the strategy.
     pub strategy: String,
-    /// How many layers the part has, and where it lies.
+    /// Number of layers, and the box around the part.
     pub extent: Extent,
 }
 
 /// A whole plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
-    /// What is the same for all layers.
+    /// What all layers have in common.
     pub header: Header,
     /// The layers, lowest first.
     pub layers: Vec<Layer>,
@@ -42,9 +42,9 @@ pub struct Plan {
 pub struct Summary {
     /// The totals.
     pub metrics: Metrics,
-    /// Events on layers.
+    /// Warnings about layers.
     pub warnings: Warnings,
-    /// What does not fit together in the profile, as sentences.
+    /// What is inconsistent in the profile, as sentences.
     pub notes: Vec<String>,
     /// Why its programs should not be written, as sentences; empty for a plan that can be welded.
     pub forbidden: Vec<String>,
@@ -91,13 +91,13 @@ pub enum PlanError<E> {
         /// Thickness of a layer, mm.
         layer_height: f64,
     },
-    /// A part that has no place in its chart.
+    /// A part that cannot be mapped into its chart.
     #[error(transparent)]
     Chart(WarpError),
-    /// The bead gives no wall.
+    /// No wall can be predicted from the bead.
     #[error(transparent)]
     Wall(#[from] WallError),
-    /// A surface that is not closed, where nobody said what it stands for.
+    /// A surface that is not closed, and the profile does not say what it stands for.
     #[error(
         "the surface of the part is open: near x {:.1} y {:.1} z {:.1} mm it has an opening {width:.1} mm wide. If it is the \
          skin of a solid, mend the model, or set slice.surface = \"solid\", which fills what its contours enclose and leaves \
@@ -115,7 +115,8 @@ pub enum PlanError<E> {
     NoSolid,
     /// A preform for layers that are not level.
     #[error(
-        "a preform holds metal below what hangs over level layers. Leave layers.chart and layers.bodies out, or plan the part without a preform."
+        "a preform adds metal below the overhangs of level layers. Leave layers.chart and layers.bodies out, or plan \
+         the part without a preform."
     )]
     PreformOfChart,
     /// Curves with layers that are not level.
@@ -131,19 +132,19 @@ pub enum PlanError<E> {
         .0.thickness.0, .0.thickness.1, .0.place.x, .0.place.y, .0.place.z
     )]
     SideBySide(Sides),
-    /// Curves that should be the sides of walls are not.
+    /// Curves that are given as the sides of walls, but are not.
     #[error(
         "not every curve has exactly one other at its side, less than {within:.1} mm away at the same height, as the sides of a \
          wall have (wall.curves). Leave the curves of one wall out of the file, or set wall.curves = \"centre\"."
     )]
     NoSides {
-        /// How far apart the sides of a wall may be, mm.
+        /// Greatest distance between the sides of a wall, mm.
         within: f64,
     },
     /// Nothing would be laid.
     #[error("nothing would be deposited: {0}")]
     Empty(String),
-    /// A layer that is not one closed wall, though all are to be turns of a helix.
+    /// A layer that is not one closed wall, though all layers are to be turns of a helix.
     #[error(
         "layer {layer} cannot be a turn of the helix that wall.helix asks for: {why}. Leave wall.helix out, plan a surface as \
          walls (slice.surface = \"wall\"), or plan the part up to there."
@@ -160,12 +161,12 @@ pub enum PlanError<E> {
     /// A body cannot be planned.
     #[error("body {name} (layers.bodies): {reason}")]
     Body {
-        /// What it is called.
+        /// Its name.
         name: String,
         /// Why, as a sentence.
         reason: String,
     },
-    /// The sink failed.
+    /// The sink's own error.
     #[error(transparent)]
     Sink(E),
 }
@@ -181,7 +182,7 @@ impl<E> From<WarpError> for PlanError<E> {
 
 /// Receives the layers of a plan in deposition order.
 pub trait Sink {
-    /// What can go wrong while a layer is taken in.
+    /// The error of taking in a layer.
     type Error: Send;
 
     /// Called once, before the first layer.
@@ -200,7 +201,7 @@ pub trait Sink {
 /// Keeps the layers of a plan.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Collect {
-    /// What is the same for all layers; `None` before the plan begins.
+    /// What all layers have in common; `None` before the plan begins.
     pub header: Option<Header>,
     /// The layers so far.
     pub layers: Vec<Layer>,

@@ -1,5 +1,5 @@
-//! The layers of parts or bodies that are welded one after another, as those of one plan: numbered consecutively, with what is
-//! reported about each, once.
+//! The layers of parts or bodies that are welded one after another, as those of one plan: numbered consecutively, with
+//! each report made once.
 
 use super::{Header, Sink, Summary};
 use crate::layer::Layer;
@@ -7,7 +7,7 @@ use crate::metrics::Metrics;
 use crate::profile::Profile;
 use crate::warning::{WarningSummary, Warnings};
 
-/// Why values for some layers cannot be used.
+/// Why values for some layers cannot be used (`process.layers`).
 pub(super) const NUMBERED_APART: &str =
     "process.layers: layers are numbered separately for each part or body, so it is not clear which are meant";
 
@@ -15,13 +15,13 @@ pub(super) const NUMBERED_APART: &str =
 pub(super) struct Row<'a, S> {
     profile: &'a Profile,
     sink: &'a mut S,
-    /// The body whose layers come; 0 for parts.
+    /// The body whose layers are coming; 0 for parts.
     pub(super) body: usize,
-    /// Layers of those before.
+    /// Number of layers before it.
     first: usize,
     /// Whether there is more than one, so that each is named.
     several: bool,
-    /// Which layers belong to which.
+    /// Which layers belong to which part or body, as text.
     ranges: Vec<String>,
     metrics: Metrics,
     volume: Option<f64>,
@@ -48,7 +48,8 @@ impl<'a, S: Sink> Row<'a, S> {
         }
     }
 
-    /// Takes what is reported about one whose layers have all come. What it warns of is reported with the layers of all.
+    /// Takes over the summary of a part or body whose layers have all come. Its warnings are reported with those of all
+    /// layers.
     pub(super) fn finish(&mut self, name: &str, layers: usize, own: &Summary) {
         let warned: Vec<String> = own.warnings.summaries().map(WarningSummary::sentence).collect();
         let several = self.several;
@@ -65,7 +66,7 @@ impl<'a, S: Sink> Row<'a, S> {
         self.volume = self.volume.zip(own.metrics.mesh_volume_mm3).map(|(a, b)| a + b);
     }
 
-    /// What is to be known about all; `how` begins the sentence that says which layers belong to which.
+    /// The summary of all; `how` begins the sentence that says which layers belong to which.
     pub(super) fn summary(self, how: &str) -> Summary {
         let Self { mut metrics, warnings, mut notes, volume, ranges, several, .. } = self;
         metrics.mesh_volume_mm3 = volume;

@@ -20,7 +20,7 @@ pub(super) struct Planned {
     pub(super) solid: Option<Region>,
 }
 
-/// A batch of slices, ready to be filled.
+/// A batch of slices ready to be filled.
 pub(super) fn planned(
     batch: usize,
     slicer: &Slicer,
@@ -61,26 +61,27 @@ fn raster_angles(
 pub struct ToFill<'a> {
     /// Its islands.
     pub islands: &'a [Polygon],
-    /// Where a sparse infill is nevertheless solid; `None` where all of it is.
+    /// Where a sparse infill is nevertheless solid; `None` if all of the infill is.
     pub solid: Option<&'a Region>,
 }
 
-/// An earlier candidate is kept unless another angle would save more than this fraction of the time: the angle should not
-/// change between layers for nothing.
+/// An earlier candidate is kept unless another angle would save more than this fraction of the time, so that the angle
+/// does not change between layers for nothing.
 const TIME_SLACK: f64 = 0.002;
 
-/// At least this fraction of the metal that the fixed angle lays: an angle must not be fast because it leaves more bare.
+/// An angle must lay at least this fraction of the metal that the fixed angle lays: it must not be fast by leaving more
+/// bare.
 const LEAST_METAL: f64 = 0.98;
 
-/// The angle, radians, of the scan lines of two layers, the second of which is turned by 90°, with which their metal is
-/// laid in the least time. The lines are laid and timed at the angles with few turns and at the profile's own angle, so
-/// they take no more time for their metal than there, within 0.2 %. `None` where no scan lines are laid.
+/// The angle, radians, of the scan lines of two layers (the second is turned by 90°) at which their metal is laid in
+/// the least time. The lines are laid and timed at the angles with few turns and at the profile's own angle, so the
+/// result takes no more time for its metal than the latter, within 0.2 %. `None` where no scan lines are laid.
 pub fn raster_angle(layers: &[ToFill], strategy: &dyn Strategy, profile: &Profile) -> Option<f64> {
     let settings = profile.fill_settings(0);
     let infills: Vec<Vec<Region>> =
         layers.iter().map(|layer| fill::angle::infills(strategy, layer.islands, &settings)).collect();
     let mut still = profile.clone();
-    // Angles are compared by their own time, not by how a positioner happens to be turned.
+    // Angles are compared by their own time, regardless of how a positioner happens to be turned.
     still.program.positioner = None;
     let laid = |angle: f64| {
         let (mut metrics, mut torch) = (Metrics::new(&still), None);
@@ -103,11 +104,11 @@ pub fn raster_angle(layers: &[ToFill], strategy: &dyn Strategy, profile: &Profil
     timed.into_iter().find(|(time, _)| *time <= least * (1.0 + TIME_SLACK)).map(|(_, angle)| angle)
 }
 
-/// What the layers above and below leave open is neither top nor bottom where it is narrower than this, in bead widths.
+/// Areas that the layers above and below leave open count as top or bottom only from this width, in bead widths.
 const SLIVER: f64 = 0.1;
 
-/// Where the infill of each layer is solid; `None` where all of it is. That is where one of the next `solid_layers`
-/// layers above or below does not cover the layer.
+/// Where the infill of each layer is solid: where one of the `solid_layers` layers next above or below does not cover
+/// it. `None` if all of it is solid.
 fn solid_regions(
     batch: usize,
     slices: &[Slice],
@@ -133,9 +134,9 @@ fn solid_regions(
         }
         let near = (own - reach..=own + reach).filter(|&other| other != own);
         let bare = near.fold(Region::default(), |bare, other| bare.union(&all[own].difference(&all[other])));
-        // Between slices of an upright wall slivers are left, since its facets are cut at different places.
+        // Slices of an upright wall differ by slivers, since its facets are cut at different places.
         let open = bare.into_polygons().into_iter().filter(|p| p.holds_disc(SLIVER * profile.bead.width / 2.0));
-        // Grown, so that the solid infill holds on to the sparse infill around it.
+        // Enlarged, so that the solid infill is anchored in the sparse infill around it.
         Some(Region::from_normalised(open.collect()).offset(2.0 * profile.bead.width, Join::ROUND))
     };
     Ok((0..slices.len()).into_par_iter().map(solid).collect())

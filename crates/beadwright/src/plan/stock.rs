@@ -1,4 +1,4 @@
-//! A part becomes its preform, which is planned in its place.
+//! Turns a part into its preform, which is planned instead.
 
 use super::{PlanError, TORN};
 use crate::model::holes::{self, Opening};
@@ -17,9 +17,9 @@ use std::convert::Infallible;
 pub struct Stocked {
     /// The preform, to be planned; it holds the part that is milled from it ([`Import::milled`]).
     pub part: Part,
-    /// The steps of which it is made.
+    /// The steps from which it is made.
     pub preform: Preform,
-    /// What it weighs, takes and costs.
+    /// Its mass, time and cost.
     pub figures: Figures,
 }
 
@@ -65,7 +65,7 @@ impl Stocked {
     }
 }
 
-/// What an open skin loses where its contours do not close, as a sentence.
+/// What an open surface loses where its contours do not close, as a sentence.
 fn lost(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<String>, Cancelled> {
     let is_open = holes::openings(mesh).first().is_some_and(|opening| opening.width > profile.bead.width);
     if !is_open {
@@ -80,8 +80,9 @@ fn lost(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<String>, C
     let longest = slices.iter().filter_map(dropped).max_by(|a, b| a.0.total_cmp(&b.0));
     Ok(longest.filter(|(length, _)| *length > TORN * profile.bead.width).map(|(length, at)| {
         format!(
-            "The preform lacks part of the solid: as its open skin stands, contours do not close and are left out, the longest \
-             {length:.0} mm near x {:.1} y {:.1} z {:.1} mm. Turn the part so that it stands on its opening, or mend the model.",
+            "The preform lacks part of the solid: as it stands, contours of its open surface do not close and are \
+             left out, the longest {length:.0} mm near x {:.1} y {:.1} z {:.1} mm. Turn the part so that it stands on \
+             its opening, or mend the model.",
             at.x, at.y, at.z
         )
     }))

@@ -1,4 +1,4 @@
-//! Whether passes lie on metal, judged by the footprints of the passes below.
+//! Whether passes lie on metal, judged by the beads of the passes below.
 
 use super::charted::Across;
 use super::turns::{Bands, unrolled_once};
@@ -12,23 +12,24 @@ use glam::DVec2;
 use planar::polyline::distance_squared_to_segment;
 use planar::{Polygon, Region};
 
-/// A pass with less than this part of its length over metal lies in the air.
+/// A pass with less than this fraction of its length over metal lies in the air.
 const LEAST: f64 = 0.5;
-/// So does one with a stretch of this length, in bead widths, that is clear of all metal below.
+/// So does one with a stretch of this length, in bead widths, that is clear of all metal below it.
 const BRIDGE: f64 = 2.0;
-/// A place is clear of a bead this far beyond its edge, in bead widths: less than a quarter of what is welded there lies on it.
+/// A place this far beyond the edge of a bead, in bead widths, is clear of it: less than a quarter of what is welded
+/// there lies on it.
 const CLEAR: f64 = 0.25;
-/// A new island in the air is left out up to this area, in squared bead widths, and up to this part of its layer, unless the layer
-/// below has no passes.
+/// A new island in the air is left out up to this area, in squared bead widths, and up to this fraction of its layer,
+/// unless the layer below has no passes.
 const SMALL: f64 = 4.0;
 const SMALL_PART: f64 = 0.5;
 /// A pass in the air is left out up to this length, in bead widths.
 const STUB: f64 = 2.0;
-/// Places per bead width at which a pass is looked at.
+/// Number of places per bead width at which a pass is checked.
 const SAMPLES: f64 = 4.0;
 /// Beads sag onto a plate that lies no farther below them than this, in heights of a layer.
 const SAGS: f64 = 1.25;
-/// An island rests on another if they share this part of the smaller one's area or more.
+/// An island rests on another if they share at least this fraction of the smaller one's area.
 const RESTS: f64 = 0.05;
 
 /// What lies below the next layer.
@@ -36,7 +37,7 @@ const RESTS: f64 = 0.05;
 pub(super) struct Support {
     /// The passes of the layer below.
     passes: Vec<Pass>,
-    /// Its outlines, and those of them that were left out because they hang.
+    /// Its outlines, and which of them were left out because they overhang.
     islands: Vec<Polygon>,
     left_out: Vec<Polygon>,
     /// Passes and outlines of the layer below that one.
@@ -48,10 +49,10 @@ pub(super) struct Support {
     footing: Footing,
 }
 
-/// What the layers of a body lie on besides one another.
+/// What the layers of a body lie on, apart from one another.
 #[derive(Debug, Clone)]
 pub(super) struct Footing {
-    /// Whether there is metal everywhere below the first layer: a plate, or what the chart says is there.
+    /// Whether there is metal everywhere below the first layer: a plate, or what the chart takes for granted.
     pub(super) plate: bool,
     /// Metal of other bodies under each layer; empty where there is none.
     pub(super) metal: Vec<Under>,
@@ -68,16 +69,16 @@ impl Default for Footing {
     }
 }
 
-/// Metal that is there under a layer.
+/// Existing metal under a layer.
 #[derive(Debug, Clone)]
 pub(super) struct Under {
-    /// Its outlines, as the layer's underside is unrolled.
+    /// Its outlines, in the unrolled coordinates of the layer's underside.
     pub(super) outlines: Vec<Polygon>,
     /// Height of that underside, mm.
     pub(super) height: f64,
 }
 
-/// Footprints of passes.
+/// Metal laid by passes.
 struct Metal {
     index: LineIndex,
     /// Half the width of each piece of each pass, mm.
@@ -85,7 +86,7 @@ struct Metal {
 }
 
 impl Support {
-    /// A body on what is there.
+    /// The support of a body that stands on `footing`.
     pub(super) fn on(footing: Footing) -> Self {
         Self { footing, ..Self::default() }
     }
@@ -99,9 +100,9 @@ impl Support {
         }
     }
 
-    /// Warns of passes that lie in the air, takes out small islands that hang, and remembers the layer for the next one.
-    /// Sparse layers support the next as if they were filled, and printed beads bridge gaps. The upper of two layers stands on
-    /// the lower one and on what lies below that.
+    /// Warns of passes that lie in the air, takes out small overhanging islands, and remembers the layer for the next
+    /// one. Sparse layers support the next as if they were filled, and printed beads bridge gaps. The upper layer of a
+    /// pair lies on the lower one and on what lies below that.
     pub(super) fn judge(&mut self, layer: &mut Layer, profile: &Profile) {
         let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0);
         if let Some(across) = Across::new(&profile.layers.chart, self.middle, layer.middle()) {
@@ -114,7 +115,7 @@ impl Support {
             self.islands.append(&mut self.before.1);
         }
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
-        // What begins within the first layer shows in the next one only.
+        // What begins within the first layer only shows in the next one.
         let near_plate = layer.z - layer.height <= SAGS * profile.layers.height;
         let on_plate = self.footing.plate && (!self.begun || near_plate);
         if !on_plate && !alike {
@@ -141,19 +142,19 @@ impl Support {
         self.begun |= !layer.passes.is_empty();
     }
 
-    /// Whether an island of the layer that was judged last was left out.
+    /// Whether an island of the last layer judged was left out.
     pub(super) fn is_left_out(&self, island: &Polygon) -> bool {
         self.left_out.contains(island)
     }
 
-    /// Whether the part has something at a place of the layer below that got no bead.
+    /// Whether a place of the layer below belongs to the part but got no bead.
     fn is_unwelded(&self, place: DVec2) -> bool {
         let within = |islands: &[Polygon]| islands.iter().any(|island| island.contains(place));
         within(&self.islands) && !within(&self.left_out)
     }
 
-    /// Takes out stubs that hang and small new islands whose passes all do, and warns of other passes that hang. `once` gives the
-    /// place of a pass on the layer as it is unrolled once. Returns the islands taken out.
+    /// Takes out short overhanging passes, and small new islands whose passes all overhang, and warns of other
+    /// overhanging passes. `once` gives the place of a pass on the layer unrolled once. Returns the islands taken out.
     fn take_out(
         &self,
         layer: &mut Layer,
@@ -168,7 +169,7 @@ impl Support {
         let island_of = |pass: &Pass| layer.islands.iter().position(|island| island.contains(start(pass)));
         let of: Vec<Option<usize>> = layer.passes.iter().map(island_of).collect();
         let area = layer.islands.iter().map(Polygon::area).sum::<f64>();
-        // Above a layer without room for a bead, all islands are new.
+        // Above a layer in which no bead fits, all islands are new.
         let part = if self.passes.is_empty() { 1.0 } else { SMALL_PART };
         let largest = (SMALL * width * width).min(part * area);
         let small = |i: usize| {
@@ -220,26 +221,26 @@ fn stands_on(island: &Polygon, lower: &Polygon) -> bool {
 #[derive(Clone, Copy, PartialEq)]
 enum Below {
     Metal,
-    /// The edge of a bead is near: the next bead holds on to it.
+    /// The edge of a bead is near enough for the next bead to adhere to it.
     Edge,
     Air,
 }
 
-/// How a pass hangs.
+/// How a pass overhangs.
 #[derive(Clone, Copy)]
 struct Hanging {
-    /// How much of it has no metal below, mm.
+    /// Length without metal below, mm.
     length: f64,
-    /// The middle of the longest such stretch.
+    /// The middle of the longest stretch without metal below.
     place: DVec2,
 }
 
-/// Whether less than `LEAST` of a pass's length lies over metal, or a stretch as long as `bridge` (mm) is clear of it;
-/// looked at in steps (mm).
+/// Checks whether less than [`LEAST`] of a pass's length lies over metal, or a stretch as long as `bridge` (mm) is
+/// clear of it, every `step` (mm).
 fn hanging(pass: &Pass, step: f64, bridge: f64, below: impl Fn(DVec2) -> Below) -> Option<Hanging> {
     let mut places: Vec<(DVec2, Below)> = places_along(pass, step).into_iter().map(|p| (p, below(p))).collect();
     if pass.closed {
-        // No stretch runs through the seam.
+        // No stretch may be split at the seam of a closed pass.
         let held = places.iter().position(|(_, below)| *below == Below::Metal).unwrap_or(0);
         places.rotate_left(held);
     }
@@ -280,7 +281,7 @@ impl Metal {
         Self { index, halves }
     }
 
-    /// Whether metal lies at a place, or within `reach` (mm) of it.
+    /// Whether there is metal at a place, or within `reach` (mm) of it.
     fn is_at(&self, p: DVec2, reach: f64) -> bool {
         self.index.near(p).any(|(line, piece, a, b)| {
             let half = self.halves[line].get(piece).copied().unwrap_or_default() + reach;

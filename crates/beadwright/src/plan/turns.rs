@@ -1,5 +1,5 @@
-//! Passes that go around an axis more than once, on the layer as it is unrolled once: their points run on turn after turn, and
-//! what judges or draws a layer sees each turn where its metal lies.
+//! Passes that go around an axis more than once: their points run on from turn to turn in unrolled coordinates, while
+//! whatever judges or draws a layer sees each turn within the layer unrolled once, where its metal lies.
 
 use super::cover;
 use crate::chart::Chart;
@@ -15,12 +15,12 @@ use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
 use std::borrow::Cow;
 
-/// Pieces shorter than this are nothing, mm.
+/// Pieces shorter than this are ignored, mm.
 const NOTHING: f64 = 1e-6;
 
-/// A turn of a slice, where islands that go all around are filled with a helix.
+/// The turns that a slice allows, if islands that go all around are filled with a helix.
 pub(super) fn turn_of(slice: &Slice, profile: &Profile) -> Option<Turn> {
-    // Walls are welded along their middle.
+    // Walls are welded along their middle, not as a helix.
     if profile.fill.around != Some(Around::Helix) || profile.fill.strategy == StrategyName::Wall {
         return None;
     }
@@ -32,14 +32,14 @@ pub(super) fn turn_of(slice: &Slice, profile: &Profile) -> Option<Turn> {
     Some(Turn { length, most })
 }
 
-/// Length of a turn of the layer with this middle, mm; `None` where layers do not go on turn after turn.
+/// Length of a turn of the layer whose middle is at this height (mm); `None` where layers do not close around an axis.
 fn turn(chart: &Chart, middle: f64) -> Option<f64> {
     let sheet = chart.sheet(middle);
     sheet.turned(DVec2::ZERO, 1.0).map(|end| end.x.abs())
 }
 
-/// A layer of which every pass lies within one turn: those that go on are cut where the next turn begins. Where there are none,
-/// the layer as it is.
+/// A layer in which every pass lies within one turn: passes that run on are cut where the next turn begins. A layer
+/// without such passes is returned as it is.
 pub fn unrolled_once<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
     match Bands::of_layer(layer, profile) {
         Some(bands) => {
@@ -50,8 +50,8 @@ pub fn unrolled_once<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> 
     }
 }
 
-/// A layer to be drawn as it is unrolled once: passes that go around more than once jump back where the next turn begins, along
-/// the bead that they have just laid and with next to no width.
+/// A layer to be drawn unrolled once: passes that go around more than once jump back where the next turn begins, along
+/// the bead that they have just laid and with almost no width.
 pub fn drawn<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
     let Some(bands) = Bands::of_layer(layer, profile) else { return Cow::Borrowed(layer) };
     let (pieces, of) = bands.cut(&layer.passes);
@@ -76,12 +76,12 @@ pub fn drawn<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
 const HAIR: f64 = 0.001;
 const AT_ONCE: f64 = 1e6;
 
-/// Whether a piece of a drawn pass is no bead but the jump to the next turn.
+/// Whether a piece of a drawn pass is not a bead but the jump to the next turn.
 pub fn is_jump(piece: &Segment) -> bool {
     piece.width <= HAIR
 }
 
-/// What fills an island, in the same way.
+/// The fill of an island, cut in the same way.
 pub(super) fn fill_once<'a>(fill: &'a Fill, island: &Polygon, turn: Option<Turn>, profile: &Profile) -> Cow<'a, Fill> {
     let islands = std::slice::from_ref(island);
     let Some(bands) = turn.and_then(|turn| Bands::of(islands, turn.length, profile)) else {
@@ -102,23 +102,23 @@ pub(super) fn fill_once<'a>(fill: &'a Fill, island: &Polygon, turn: Option<Turn>
     Cow::Owned(Fill { stages: fill.stages.iter().map(once).collect(), ..*fill })
 }
 
-/// The islands of a layer that go all around, with passes that do so more than once.
+/// The islands of a layer that go all around and have passes that go around more than once.
 pub struct Bands {
     bands: Vec<Bounds>,
     /// Length of a turn, mm.
     turn: f64,
-    /// A pass that goes on reaches farther beyond its island than this, mm: beads may lie on an allowance.
+    /// A pass that runs on reaches more than this beyond its island, mm: beads may lie on an allowance.
     beyond: f64,
 }
 
 impl Bands {
-    /// Those of a layer; `None` where no pass goes around more than once.
+    /// The bands of a layer; `None` where no pass goes around more than once.
     pub fn of_layer(layer: &Layer, profile: &Profile) -> Option<Self> {
         let turn = turn(profile.layers.chart_of(layer), layer.middle())?;
         Self::of(&layer.islands, turn, profile).filter(|bands| layer.passes.iter().any(|pass| bands.goes_on(pass)))
     }
 
-    /// Those of some islands; `turn` in mm.
+    /// The bands among some islands; `turn` in mm.
     pub(crate) fn of(islands: &[Polygon], turn: f64, profile: &Profile) -> Option<Self> {
         let width = profile.bead.width;
         // Beads may reach beyond the outline, and may be moved there.
@@ -138,7 +138,7 @@ impl Bands {
         })
     }
 
-    /// The island around which a pass goes.
+    /// The island that a pass goes around.
     fn around(&self, pass: &Pass) -> Option<&Bounds> {
         let start = pass.start().filter(|start| start.is_finite())?;
         self.band_at(start.truncate())
@@ -148,26 +148,26 @@ impl Bands {
         self.bands.iter().find(|band| (band.min.y..=band.max.y).contains(&p.y))
     }
 
-    /// How many turns a place of a band lies after its beginning.
+    /// How many turns a place lies after the beginning of its band.
     fn turns(&self, band: &Bounds, x: f64) -> f64 {
         ((x - band.min.x) / self.turn).floor()
     }
 
-    /// A piece of a pass on the layer as it is unrolled once, as a whole.
+    /// A piece of a pass moved, as a whole, onto the layer unrolled once.
     pub fn piece(&self, piece: Segment) -> Segment {
         let middle = piece.from.midpoint(piece.to).truncate();
         let on = (self.place(middle) - middle).extend(0.0);
         Segment { from: piece.from + on, to: piece.to + on, ..piece }
     }
 
-    /// A place of a pass on the layer as it is unrolled once.
+    /// A place of a pass on the layer unrolled once.
     pub(crate) fn place(&self, p: DVec2) -> DVec2 {
         let on = |band: &Bounds| p - DVec2::new(self.turns(band, p.x) * self.turn, 0.0);
         self.band_at(p).map_or(p, on)
     }
 
-    /// Passes cut where they come to the next turn, each piece on the layer as it is unrolled once; and for each piece, the
-    /// index of the pass that it is of.
+    /// Passes cut where they come to the next turn, each piece on the layer unrolled once, and for each piece the index
+    /// of its pass.
     pub(crate) fn cut(&self, passes: &[Pass]) -> (Vec<Pass>, Vec<usize>) {
         let pieces = |(index, pass): (usize, &Pass)| {
             let band = self.around(pass).filter(|_| self.goes_on(pass));
@@ -207,7 +207,8 @@ impl Bands {
         ends.windows(2).map(|ends| Segment { from: at(ends[0]), to: at(ends[1]), ..segment }).collect()
     }
 
-    /// Strips beyond both ends of each island, as wide as a bead: the ends of a turn reach there, and are metal of the next one.
+    /// Strips beyond both ends of each island, one bead wide: the ends of a turn reach there, as metal of the next
+    /// turn.
     fn beyond(&self, width: f64) -> Vec<Polygon> {
         let strip = |from: f64, band: &Bounds| {
             let (low, high) = (DVec2::new(from, band.min.y), DVec2::new(from + width, band.max.y));
@@ -216,8 +217,8 @@ impl Bands {
         self.bands.iter().flat_map(|band| [strip(band.min.x - width, band), strip(band.max.x, band)]).collect()
     }
 
-    /// What [`Self::cut`] made of passes put together again, whatever has happened to the pieces meanwhile; `of` says which
-    /// belong together.
+    /// The passes cut by [`Self::cut`], joined again, whatever has happened to the pieces meanwhile; `of` gives the
+    /// pass of each piece.
     pub(crate) fn joined(&self, pieces: Vec<Pass>, of: &[usize]) -> Vec<Pass> {
         let mut joined: Vec<(usize, Pass)> = Vec::new();
         for (piece, &index) in pieces.into_iter().zip(of) {
@@ -229,7 +230,7 @@ impl Bands {
         joined.into_iter().map(|(_, pass)| pass).collect()
     }
 
-    /// Continues a pass with its next turn. They meet halfway if one of them was moved.
+    /// Appends the next turn to a pass. They meet halfway if one of them was moved.
     fn append(&self, pass: &mut Pass, next: &Pass) {
         let (Some(end), Some(start)) = (pass.end(), next.start()) else { return };
         let on = DVec3::new(((end.x - start.x) / self.turn).round() * self.turn, 0.0, 0.0);

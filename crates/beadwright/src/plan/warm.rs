@@ -13,24 +13,25 @@ use crate::task::Task;
 use glam::DVec3;
 use planar::Bounds;
 
-/// How often a wall is planned until its layers lie where its own heat lets them rise; each time brings them closer by a
-/// factor of ten.
+/// How often a wall is planned until its layers lie where its own heat lets them rise; each round reduces the error by
+/// a factor of ten.
 const ROUNDS: usize = 3;
 
-/// Heights that differ by less are the same, mm.
+/// Heights that differ by no more than this are the same, mm.
 const SAME: f64 = 1e-6;
 
-/// How warm the metal ahead of the torch is at each height of a wall, and what that does to its layers.
+/// How warm the metal ahead of the torch is at each height of a wall, and how that changes its layers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Warmth {
-    /// Tops of layers, mm, and by how much each rises less or more than at the temperature of the profile.
+    /// Tops of layers, mm, and their rise as a multiple of that at the temperature of the profile.
     lifts: Vec<(f64, f64)>,
 }
 
 impl Warmth {
-    /// Thickness of a layer on metal at a height (mm), as a multiple of what it is at the temperature of the profile.
+    /// Thickness of a layer on metal at a height (mm), as a multiple of its thickness at the temperature of the
+    /// profile.
     pub(super) fn lift(&self, z: f64) -> f64 {
-        // Where one layer ends and the next begins, rounding must not decide.
+        // At the boundary between two layers, rounding must not decide.
         let next = self.lifts.partition_point(|(top, _)| *top <= z + SAME);
         self.lifts.get(next).or(self.lifts.last()).map_or(1.0, |(_, lift)| *lift)
     }
@@ -41,7 +42,7 @@ impl Warmth {
 pub(super) struct Heat {
     /// The body whose layers come.
     pub(super) body: usize,
-    /// Its metal; `None` where the profile neither limits its temperature nor says what it does.
+    /// Its metal; `None` where the profile neither limits temperatures nor says what heat does to beads.
     pub(super) build: Option<Build>,
     warmth: Warmth,
 }
@@ -54,11 +55,11 @@ impl Heat {
         Self { body: 0, build, warmth: warmth.clone() }
     }
 
-    /// What the bodies of a part begin on, each given by its chart and its mesh in that.
+    /// What the bodies of a part begin on, each given by its chart and its mesh in the chart's coordinates.
     pub(super) fn of_bodies<'a>(profile: &Profile, bodies: impl Iterator<Item = (&'a Chart, &'a Mesh)>) -> Self {
         let build = settings(profile).map(|settings| {
             let site = |(chart, mesh): (&Chart, &Mesh)| {
-                // Around an axis the mesh holds what lies below the first layer, too.
+                // Around an axis the mesh includes what lies below the first layer.
                 let least = if chart.goes_around() { profile.layers.height / 2.0 } else { f64::NEG_INFINITY };
                 let welded: Vec<DVec3> = mesh.vertices.iter().copied().filter(|p| p.z > least).collect();
                 Site::of(chart, &welded, 0.0)
@@ -76,26 +77,27 @@ impl Heat {
         (!chart.is_level()).then(|| Self::of_bodies(profile, std::iter::once((chart, mesh))))
     }
 
-    /// The same, before the layers of a body.
+    /// The same heat, before the layers of the next body.
     pub(super) fn before(&mut self, body: usize, warmth: &Warmth) -> &mut Self {
         (self.body, self.warmth) = (body, warmth.clone());
         self
     }
 
-    /// How thick a layer on metal at a height (mm) is, as a multiple of what it is at the temperature of the profile.
+    /// Thickness of a layer on metal at a height (mm), as a multiple of its thickness at the temperature of the
+    /// profile.
     pub(super) fn lift(&self, index: usize, below: f64) -> f64 {
         // The first bead of a wall is a cap on the cold plate.
         if index == 0 { 1.0 } else { self.warmth.lift(below) }
     }
 }
 
-/// What the heat model knows, where the profile limits temperatures or says what they do.
+/// The settings of the heat model, where the profile limits temperatures or says what heat does to beads.
 fn settings(profile: &Profile) -> Option<HeatSettings> {
     let matters = profile.interpass.is_some() || profile.bead.by_heat.is_some();
     profile.heat_settings().ok().filter(|_| matters)
 }
 
-/// The warmth of a wall, if its profile says what heat does to its layers, and they follow its height.
+/// The warmth of a wall, if its profile says what heat does to its layers, and its layers follow their height.
 pub(super) fn predicted<E>(part: PartRef, profile: &Profile, task: &Task) -> Result<Warmth, PlanError<E>> {
     let mut warmth = Warmth::default();
     let Some(law) = profile.bead.by_heat else { return Ok(warmth) };
@@ -109,7 +111,7 @@ pub(super) fn predicted<E>(part: PartRef, profile: &Profile, task: &Task) -> Res
         match plan_at(Start::alone(&warmth, heat.as_mut()), "", part, profile, task, &mut planned) {
             Ok(_) => {}
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled.into()),
-            // The plan itself reports what is wrong.
+            // The plan itself reports the fault.
             Err(_) => return Ok(warmth),
         }
         let lift = |layer: &Layer| Some((layer.z, law.lift(wall.rise(), ahead(layer)?)));
@@ -128,15 +130,15 @@ fn ahead(layer: &Layer) -> Option<f64> {
     (whole > 0.0).then(|| sum / whole)
 }
 
-/// Makes the passes of a layer as wide as their beads become on the metal that they find, `nominal` (mm) being the width of
-/// the profile's bead. Their paces stay: the metal is the same, and lies lower.
+/// Makes the passes of a layer as wide as their beads become on the warm metal below; `nominal` (mm) is the width of
+/// the profile's bead. Their paces stay the same: the metal is the same, but flatter.
 pub(super) fn widen(layer: &mut Layer, heat: &LayerHeat, build: &Build, law: &BeadByHeat, nominal: f64) {
     for (pass, heat) in layer.passes.iter_mut().zip(&heat.passes) {
         pass.width = along(pass, heat, build, |piece, ahead| piece.width * law.widening(nominal, ahead));
     }
 }
 
-/// A value for every piece of a pass, by the temperature ahead of the torch on it (°C).
+/// A value for every piece of a pass, from the temperature (°C) ahead of the torch there.
 pub(crate) fn along(pass: &Pass, heat: &PassHeat, build: &Build, value: impl Fn(&Segment, f64) -> f64) -> Along {
     let mut way = 0.0;
     let mut of = |piece: Segment| {

@@ -8,8 +8,8 @@ use crate::task::{Cancelled, Task};
 use crate::wedge::{THINNEST, TOLERANCE};
 use glam::DVec2;
 
-/// The layers of a part along a guide: as thick as planned where all of a layer is then within its window, thinner or thicker where
-/// that helps, and else in two parts on the outer side of the bend.
+/// The layers of a part along a guide: as thick as planned if all of a layer is then within its window, thinner or
+/// thicker if that helps, and otherwise in two parts on the outer side of the bend.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -30,14 +30,14 @@ pub(super) fn slabs(slabs: Vec<Slab>, mesh: &Mesh, profile: &Profile, task: &Tas
     Ok(within(&planned, layers))
 }
 
-/// What a layer of the chart is at a height: as planned there, and the corners of its outline.
+/// The planned layer at a height, and the corners of its outline.
 struct Known {
     slab: Slab,
     corners: Vec<DVec2>,
 }
 
 impl Known {
-    /// The least and the largest rise on a layer with this middle, mm.
+    /// The least and the greatest rise on a layer whose middle is at this height, mm.
     fn rises(&self, middle: f64, chart: &Chart) -> (f64, f64) {
         let sheet = chart.sheet(middle);
         let rises = self.corners.iter().map(|p| sheet.rise(*p));
@@ -46,7 +46,7 @@ impl Known {
     }
 }
 
-/// Layers within their window, from those that were planned, which end where those end.
+/// Layers within their window, made from the planned ones and ending at the same top.
 fn within(planned: &[Known], layers: &LayersSection) -> Vec<Slab> {
     let Some(top) = planned.last().map(|last| last.slab.z) else { return Vec::new() };
     let (thinnest, thickest) = layers.window();
@@ -55,10 +55,10 @@ fn within(planned: &[Known], layers: &LayersSection) -> Vec<Slab> {
         let usual = at(z).slab.height;
         let (low, high) = at(middle).rises(middle, &layers.chart);
         let (least, most) = (thinnest / low, thickest / high);
-        // In two layers where it is thickest, if need be.
+        // In two layers where it is thickest, if necessary.
         if least > most { usual.min(2.0 * most).max(least) } else { usual.clamp(least, most) }
     };
-    // Its middle depends on its height, and where a bend ends, either may lie on the other side of that.
+    // The middle of a layer depends on its height, and the two may lie on opposite sides of a bend's end.
     let height = |z: f64| {
         let first = fitting(z, z + at(z).slab.height / 2.0);
         let second = fitting(z, z + first / 2.0);

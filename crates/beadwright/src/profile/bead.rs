@@ -20,8 +20,8 @@ pub struct BeadSection {
     /// measured beads as `{ library = [[width, height], …] }` in mm; default constant-height.
     #[serde(default)]
     pub law: Law,
-    /// A library of measured beads, as `beadwright bead fit` writes it; its path is relative to the profile's folder. What
-    /// it says of beads of this process at other speeds replaces `law`; optional.
+    /// Path of a library of measured beads, as `beadwright bead fit` writes it, relative to the profile's folder. The
+    /// beads that it gives for this process at other speeds replace `law`; optional.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub library: Option<String>,
     /// How the bead changes with the heat of the metal below; optional, default not at all.

@@ -1,4 +1,4 @@
-//! Bodies: what a part is welded as, one after another, each with layers of its own kind (`[[layers.bodies]]`).
+//! Bodies that a part is welded as, one after another, each with layers of its own kind (`[[layers.bodies]]`).
 
 use super::{Predict, Profile};
 use crate::chart::{self, Chart, Plane};
@@ -9,18 +9,19 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// One of the bodies as which a part is welded.
+/// One of the bodies that a part is welded as.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Body {
-    /// What it is called in reports and messages.
+    /// Its name in reports and messages.
     pub name: String,
     /// How its layers lie in space, as in `layers.chart`; level if left out. What lies below its first layer belongs to other bodies.
     #[serde(default, skip_serializing_if = "Chart::is_level")]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub chart: Chart,
-    /// Planes such as `up=0/0/-1,through=0/0/60`: the body is what of the part lies above all of them, and above its first layer.
+    /// Planes such as `up=0/0/-1,through=0/0/60`: the body is the part of the model above all of them, and above its
+    /// first layer.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub within: Vec<Plane>,
@@ -29,11 +30,11 @@ pub struct Body {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub solids: Vec<Solid>,
-    /// Whether its first layer lies on metal that is there already and is not welded, such as a shaft; it lies on other bodies, or
-    /// on the plate, if left out. What the first body lies on is always there already.
+    /// Whether its first layer lies on existing metal that is not welded, such as a shaft; if left out, it lies on
+    /// other bodies or on the plate. What the first body lies on always exists already.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub on_stock: bool,
-    /// What fills it; `fill.strategy` if left out.
+    /// Strategy that fills it; `fill.strategy` if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strategy: Option<StrategyName>,
     /// When the heights of its layers are predicted; `layers.predict` if left out.
@@ -41,13 +42,13 @@ pub struct Body {
     pub predict: Option<Predict>,
 }
 
-/// What names a solid of a model.
+/// How a solid of a model is named.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum Solid {
-    /// The one whose surface lies nearest to a point, mm.
+    /// The solid whose surface lies nearest to a point, mm.
     At(DVec3),
-    /// Those of the object with this name.
+    /// The solids of the object with this name.
     Named(String),
 }
 
@@ -106,7 +107,7 @@ impl Body {
     /// ```
     ///
     /// # Errors
-    /// [`BodiesError`] with the line.
+    /// [`BodiesError`], which names the line.
     pub fn read(text: &str) -> Result<Vec<Self>, BodiesError> {
         let file: File = toml::from_str(text).map_err(|error| {
             let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or_default();
@@ -175,8 +176,8 @@ impl Body {
         text
     }
 
-    /// Names of objects become points on their solids; `objects` are those of the model, as the part stands. A name that none of
-    /// them has stays.
+    /// Replaces names of objects by points on their solids; `objects` are those of the model, as the part stands. A
+    /// name that none of them has is kept.
     pub fn find_solids(&mut self, objects: &[Object]) {
         let found = |solid: Solid| -> Vec<Solid> {
             let Solid::Named(name) = &solid else { return vec![solid] };
@@ -187,7 +188,7 @@ impl Body {
         self.solids = self.solids.drain(..).flat_map(found).collect();
     }
 
-    /// A solid whose name no object of the model has.
+    /// The name of a solid that no object of the model has.
     pub fn unknown_solid(&self) -> Option<&str> {
         self.solids.iter().find_map(|solid| match solid {
             Solid::Named(name) => Some(name.as_str()),
@@ -195,7 +196,7 @@ impl Body {
         })
     }
 
-    /// The solids of a mesh of which it is a part.
+    /// The solids of a mesh that this body is part of.
     pub(crate) fn solids_of<'m>(&self, mesh: &'m Mesh) -> Cow<'m, Mesh> {
         if self.solids.is_empty() {
             return Cow::Borrowed(mesh);
@@ -208,7 +209,8 @@ impl Body {
         Cow::Owned(solids.mesh(&self.solids.iter().filter_map(number).collect::<Vec<_>>()))
     }
 
-    /// The part of a mesh that it is. Around an axis and along a guide, what lies below its first layer is still there.
+    /// The part of a mesh that belongs to this body. Around an axis and along a guide, it includes what lies below the
+    /// body's first layer.
     pub fn of_mesh(&self, mesh: &Mesh) -> Mesh {
         let first = match &self.chart {
             Chart::Plane(plane) if !self.chart.is_level() => Some(plane),
@@ -218,7 +220,7 @@ impl Body {
         self.within.iter().chain(first).fold(whole, |rest, plane| plane.above(&rest))
     }
 
-    /// Whether a place of the part belongs to it, as far as its chart and planes say; its solids are not looked at.
+    /// Whether a place of the part belongs to it by its chart and planes; its solids are ignored.
     pub fn has(&self, p: DVec3) -> bool {
         self.chart.coordinates(p).z >= 0.0 && self.within.iter().all(|plane| plane.coordinates(p).z >= 0.0)
     }

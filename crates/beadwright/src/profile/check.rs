@@ -24,7 +24,8 @@ pub struct CheckLimits {
     pub max_heat_input: Option<f64>,
     /// Minimum time of a layer, s; not checked if left out.
     pub min_layer_time: Option<f64>,
-    /// Layers that take less time than this need a wait to cool where the program has none, s; 0 for no reminder; default 15.
+    /// Layers that take less time than this, s, are reported if the program has no wait to cool them; 0 for no report;
+    /// default 15.
     pub cooling_time: f64,
     /// Number of consecutive layers on which arcs must not all start in the same place; default 12.
     pub stacked_starts: u32,

@@ -23,10 +23,11 @@ pub struct LayersSection {
     /// top of the part.
     #[serde(default)]
     pub fit: LayerFit,
-    /// Whether layers of solids are as high as the metal of their passes fills their slices (a wide one is `height`), end at
-    /// the top of the part, and have metal where the slice needs it: more in beads at the rim and where the model finds the
-    /// layers below too low, less in beads between others and where it finds them too high; default true. Otherwise all
-    /// layers have the same height and all beads are alike, and a part with few beads side by side ends lower than planned.
+    /// Whether layers of solids are as high as their metal fills their slices (a wide one is `height` high), end at the
+    /// top of the part, and get metal where the slice needs it: more in beads at the rim and where the model finds the
+    /// layers below too low, less in beads between others and where it finds them too high; default true. If false, all
+    /// layers have the same height and all beads are alike, and a part with few beads side by side ends lower than
+    /// planned.
     #[serde(default = "yes")]
     pub level: bool,
     /// Whether layers are placed where the wall's beads are predicted to lie (Li et al., eqs 5 to 8) instead of one
@@ -34,20 +35,21 @@ pub struct LayersSection {
     /// bead), `always` or `never`; default auto.
     #[serde(default, alias = "foretell")]
     pub predict: Predict,
-    /// The thinnest that a bead may be where a layer is not as thick everywhere (a bend of `guide`), mm; default 0.6 times the
+    /// Least thickness of a bead where the thickness of a layer varies (a bend of `guide`), mm; default 0.6 times the
     /// height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min_height: Option<f64>,
-    /// The thickest that a bead may be there, mm; default 1.4 times the height. Where a bend would make a layer thicker on its
-    /// outer side, that side is welded in two layers.
+    /// Greatest thickness of a bead there, mm; default 1.4 times the height. Where a bend would make a layer thicker on
+    /// its outer side, that side is welded in two layers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_height: Option<f64>,
     /// How layers lie in space where they are not level: `plane:up=X/Y/Z`, `cylinder:axis=z,radius=MM`,
-    /// `cone:axis=-z,tip=X/Y/Z,angle=DEGREES` or `guide:points=X/Y/Z:X/Y/Z:X/Y/Z,radius=MM`; optional.
+    /// `cone:axis=-z,tip=X/Y/Z,angle=DEGREES`, `guide:points=X/Y/Z:X/Y/Z:X/Y/Z,radius=MM`, or `surface:…` as
+    /// `beadwright surface` writes it; optional.
     #[serde(default, skip_serializing_if = "Chart::is_level")]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub chart: Chart,
-    /// The bodies as which a part is welded, one after another, each with layers of its own kind; optional.
+    /// The bodies that a part is welded as, one after another, each with layers of its own kind; optional.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<Body>,
     /// The box around an existing part on which this one is welded, its lowest and highest corner, mm: travels between bodies keep
@@ -74,12 +76,12 @@ pub enum Predict {
     Never,
 }
 
-/// How thin and how thick beads may be if nothing else is said, in heights of a layer.
+/// Default limits of a bead's thickness where the thickness of a layer varies, in heights of a layer.
 const THIN: f64 = 0.6;
 const THICK: f64 = 1.4;
 
 impl LayersSection {
-    /// How the layers of each body lie in space; of a part that is one body, the one chart.
+    /// How the layers of each body lie in space; for a part that is one body, its only chart.
     pub fn charts(&self) -> impl Iterator<Item = &Chart> {
         let one = self.bodies.is_empty().then_some(&self.chart);
         self.bodies.iter().map(|body| &body.chart).chain(one)
@@ -90,7 +92,7 @@ impl LayersSection {
         self.charts().all(Chart::is_level)
     }
 
-    /// One of three: for level layers, for others of one body, or for several bodies.
+    /// One of three values: for level layers, for other layers of a single body, or for several bodies.
     pub fn by_lie<T>(&self, level: T, charted: T, bodies: T) -> T {
         if self.are_level() {
             level
@@ -112,18 +114,19 @@ impl LayersSection {
         (!chart.is_level()).then(|| chart.sheet(layer.middle()))
     }
 
-    /// The wedge that a layer is; `None` where its thickness is the same everywhere.
+    /// The wedge that a layer forms; `None` where its thickness is uniform.
     pub fn wedge(&self, layer: &Layer) -> Option<Wedge<'_>> {
         Wedge::of(layer, self.chart_of(layer), self.window())
     }
 
-    /// How thin and how thick a bead may be where a layer is not as thick everywhere, mm.
+    /// Least and greatest thickness of a bead where the thickness of a layer varies, mm.
     pub fn window(&self) -> (f64, f64) {
         let [thin, thick] = [THIN, THICK].map(|part| part * self.height);
         (self.min_height.unwrap_or(thin), self.max_height.unwrap_or(thick))
     }
 
-    /// Whether a place of the part is to be welded: what is in no body, such as the shaft below layers around it, is there already.
+    /// Whether a place of the part is to be welded: what belongs to no body, such as the shaft below layers around it,
+    /// already exists.
     pub fn has(&self, p: DVec3) -> bool {
         match &self.bodies[..] {
             [] => self.chart.coordinates(p).z >= 0.0,

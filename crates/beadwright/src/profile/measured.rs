@@ -4,9 +4,9 @@ use super::Profile;
 use crate::bead::Law;
 use crate::bead::library::BeadLibrary;
 
-/// Number of speeds at which the library is asked.
+/// Number of speeds at which the library is evaluated.
 const SPEEDS: u32 = 16;
-/// The library's bead at the profile's process may be this much wider or narrower than bead.width.
+/// Fraction by which the library's bead for the profile's process may be wider or narrower than bead.width.
 const ALIKE: f64 = 0.1;
 
 /// How the bead changes with the speed at the profile's process, as given by a library (the text of a file written by

@@ -156,7 +156,7 @@ pub struct Profile {
     /// Prices; optional.
     #[serde(default)]
     pub cost: Cost,
-    /// The heat that the arc gives and the surroundings take, for temperatures; optional.
+    /// Heat from the arc and to the surroundings, for temperatures; optional.
     pub heat: Option<HeatSection>,
     /// Thermal values of the part; optional.
     pub material: Option<Material>,
@@ -188,7 +188,7 @@ impl Profile {
     /// ```
     ///
     /// # Errors
-    /// [`ProfileError`] with the line, the key and what would be right.
+    /// [`ProfileError`], which names the line, the key and what would be right.
     pub fn parse(text: &str) -> Result<Self, ProfileError> {
         read::parse(text, &mut read::built_in_base)
     }
@@ -297,8 +297,8 @@ impl Profile {
         predicted.then(|| self.single_wall()).transpose()
     }
 
-    /// Whether layers are as high as their metal fills them: not where walls are predicted from their beads, where an infill
-    /// leaves room on purpose, or where a paper is followed to the letter.
+    /// Whether layers are as high as their metal fills them: not where walls are predicted from their beads, where an
+    /// infill leaves gaps on purpose, or where a paper is followed to the letter.
     pub fn is_level(&self) -> bool {
         let walls = self.wall_bead().is_ok_and(|wall| wall.is_some());
         let literal = self.hybrid.literal && self.fill.strategy == StrategyName::Hybrid;
@@ -397,7 +397,7 @@ impl Profile {
             raster_angle: ((fill.raster_angle + turned) % 180.0).to_radians(),
             raster_spacing: fill.raster_spacing,
             line_ends: fill.line_ends,
-            // Where a strategy has the choice, its passes outlast the start of their arc.
+            // If a strategy has the choice, its passes last longer than the start of their arc.
             min_pass_length: fill.min_pass_length.max(self.steady_after() * self.process.deposition_speed),
             layer,
             hybrid: self.hybrid.settings(self.bead.width, self.stepover()),

@@ -88,7 +88,7 @@ pub(super) fn parse(
         ancestors.push(ancestor);
     }
     let mut profile = deserialize(text, &ancestors).map_err(|e| refused(&e, text, &ancestors))?;
-    // The law stays with the profile where the library's file does not go, such as into plan.json.
+    // The law goes with the profile where the library's file does not, such as into plan.json.
     if let Some((name, library)) = profile.bead.library.take().zip(library) {
         let law = measured::law(&library, &profile);
         profile.bead.law = law.map_err(|reason| of_library(text, name, reason))?;

@@ -14,8 +14,8 @@ section! {
         chord_error: f64 = 0.02, TINY, 1.0, "mm", "no controller follows a finer path, and more than 1 mm is visible";
         /// Radius of the path's corners, in bead widths; default 0.5.
         corner_radius: f64 = 0.5, 0.05, 10.0, "bead widths", "a sharp corner stops the torch; a wide one leaves the part";
-        /// Distance that paths which touch at a junction and turn away keep from its middle, in bead widths; default
-        /// 0.4.
+        /// Distance from the middle of a junction that is kept by paths that touch there and turn away, in bead widths;
+        /// default 0.4.
         junction_gap: f64 = 0.4, 0.0, 1.0, "bead widths", "a bead's end reaches no farther than the bead is wide";
         /// Gap between the end of a path at a junction and the paths that run through the junction, in bead widths;
         /// default 0.4.
@@ -26,8 +26,8 @@ section! {
         /// Walls of a solid that are thinner than this get no bead, in bead widths; default 0.5. The strategy `wall` welds
         /// all of them.
         thinnest: f64 = 0.5, 0.2, 1.0, "bead widths", "the narrowest bead would lie next to a thinner wall rather than in it";
-        /// What curves that run side by side are, closer than two beads: the `sides` of a wall, which gets one bead in the
-        /// middle between them, or the `centre` lines of walls; without it, such curves are not planned.
+        /// What curves less than two beads apart, side by side, stand for: the `sides` of a wall, which gets one bead
+        /// midway between them, or the `centre` lines of walls; without it, such curves are not planned.
         #[serde(skip_serializing_if = "Option::is_none")]
         curves: Option<CurvesAre> = None;
         /// Whether closed walls become the turns of one helix, from the bottom to the top with one arc start; default false.

@@ -5,13 +5,13 @@ const dot3 = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 const newCamera = () => ({ target: [0, 0, 0], distance: 1, yaw: -0.6, pitch: 0.55, fitted: true });
 
-// The way to the right, up and towards the eye, as seen by the camera.
+// Unit vectors to the right, up and towards the eye, as the camera sees them.
 function axesOf({ yaw, pitch }) {
   const [c, s, cp, sp] = [Math.cos(yaw), Math.sin(yaw), Math.cos(pitch), Math.sin(pitch)];
   return { right: [c, s, 0], up: [-s * sp, c * sp, cp], back: [s * cp, -c * cp, sp] };
 }
 
-// All corners of a box ([low, high]) in view.
+// Brings all corners of a box ([low, high]) into view.
 function fitCamera(camera, box, aspect) {
   const { right, up, back } = axesOf(camera), middle = [0, 1, 2].map(i => (box[0][i] + box[1][i]) / 2);
   const needed = Array.from({ length: 8 }, (_, corner) => {
@@ -26,14 +26,14 @@ function turnCamera(camera, yaw, pitch) {
   camera.pitch = Math.min(Math.max(camera.pitch + pitch, -1.55), 1.55);
 }
 
-// Moves the part by parts of the picture's height.
+// Moves the part by fractions of the picture's height.
 function panCamera(camera, x, y) {
   const { right, up } = axesOf(camera), size = 2 * FIELD * camera.distance;
   camera.target = camera.target.map((v, i) => v - size * (x * right[i] - y * up[i]));
   camera.fitted = false;
 }
 
-// Closer by a factor, keeping what lies at (x, y) of the picture, -1 to 1.
+// Zooms by a factor; what lies at (x, y) of the picture, -1 to 1, stays there.
 function zoomCamera(camera, factor, x, y, aspect) {
   const distance = Math.min(Math.max(camera.distance / factor, 0.5), 1e6), { right, up } = axesOf(camera);
   const moved = FIELD * (camera.distance - distance);
@@ -42,7 +42,7 @@ function zoomCamera(camera, factor, x, y, aspect) {
   camera.fitted = false;
 }
 
-// Places in the part to the picture; what lies within `reach` of the target is not cut off.
+// The matrix from places in the part to the picture; what lies within `reach` of the target is not clipped.
 function matrixOf(camera, aspect, reach) {
   const { right, up, back } = axesOf(camera), { target, distance } = camera;
   const near = Math.max(distance - reach, distance / 200), far = distance + reach;
@@ -54,7 +54,7 @@ function matrixOf(camera, aspect, reach) {
   return new Float32Array([0, 1, 2, 3].flatMap(i => [x[i], y[i], z[i], depth[i]]));
 }
 
-// Where a place lies in a picture of a size, px; null behind the eye.
+// Where a place lies in a picture of this size, px; null behind the eye.
 function projected(m, [x, y, z], width, height) {
   const [px, py, , w] = [0, 1, 2, 3].map(i => m[i] * x + m[4 + i] * y + m[8 + i] * z + m[12 + i]);
   return w > 0 ? [(px / w + 1) / 2 * width, (1 - py / w) / 2 * height] : null;

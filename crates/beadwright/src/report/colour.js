@@ -46,7 +46,7 @@ const CHOICES = {
   heat: { field: 0 },
 };
 
-// Where a value lies in a range, 0 to 1; the middle where there is but one value.
+// Position of a value within a range, 0 to 1; the middle if the range is a single value.
 const partOf = (value, [low, high]) => high > low ? (value - low) / (high - low) : 0.5;
 
 // The colour of the piece after a point; `t` is its time in the layer, s.

@@ -20,12 +20,12 @@ async function readPlaced(index) {
   return { ...layer, index, begins, lasts };
 }
 
-// The time of the build at a time with the arc on in a layer, s; what a layer waits and travels is spread over it.
+// Build time at a time with the arc on in a layer, s; the layer's waits and travels are spread over it.
 const whenOf = (layer, t) => layer.begins + (layer.seconds > 0 ? t / layer.seconds : 0) * layer.lasts;
 
 const kept = new Map();
 
-// The promise of a layer; the last ones are kept.
+// The promise of a layer; the most recent ones are kept.
 function layerAt(index) {
   const layer = kept.get(index) ?? readPlaced(index);
   kept.delete(index);

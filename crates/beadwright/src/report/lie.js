@@ -1,6 +1,7 @@
-// How layers lie in space: lie.rs describes what is known of each. Level layers have none.
+// How layers lie in space; lie.rs describes their data. Level layers have none.
 
-// A place of a layer, `up` mm above its middle, and the normal there, as long as the layer is thick of its usual thickness.
+// A place of a layer in space, `up` mm above its middle, and the normal there; its length is the layer's thickness
+// there divided by the usual one.
 function placed(lie, u, v, up) {
   if (lie.flat) {
     const { origin, along, normal, bend } = lie.flat, rise = 1 - bend[0] * u - bend[1] * v;
@@ -35,7 +36,8 @@ function heightAt({ from, step, columns, control }, x, y) {
   return [height, sx, sy];
 }
 
-// Parts of a straight piece on a layer, 0 to 1, close enough together in space; the end of the piece is one of them.
+// Fractions of a straight piece on a layer, 0 to 1, close enough together that the piece follows the layer in space;
+// the last is 1.
 function divisions(lie, from, to) {
   if (lie?.over) {
     const count = Math.max(Math.ceil(Math.hypot(to[0] - from[0], to[1] - from[1]) / data.surfaces[lie.over.body].step), 1);
@@ -43,7 +45,7 @@ function divisions(lie, from, to) {
   }
   if (!lie?.around) return [1];
   const [a, b] = [from, to].map(([u, v]) => placed(lie, u, v, 0).normal), { radius, half } = lie.around;
-  // Normals cannot show more than half a turn.
+  // The angle between two normals is never more than half a turn.
   const turn = Math.max(Math.acos(Math.min(dot3(a, b), 1)), half === undefined ? Math.abs(to[0] - from[0]) / radius : 0);
   const count = Math.max(Math.ceil(turn / 0.1), 1);
   return Array.from({ length: count }, (_, k) => (k + 1) / count);

@@ -55,7 +55,7 @@ fn place(chart: &Chart, middle: f64, body: usize) -> Value {
     }
 }
 
-/// That of a layer around an axis, mm.
+/// Radius of a layer around an axis, mm.
 fn radius(sheet: &Sheet<'_>) -> f64 {
     let turns = sheet.turns_to(glam::DVec2::ZERO, glam::DVec2::X);
     if turns == 0.0 { 1.0 } else { 1.0 / (TAU * turns.abs()) }
@@ -104,7 +104,7 @@ mod tests {
             let (chart, middle): (Chart, f64) = (text.parse()?, 12.5);
             let (sheet, lie) = (chart.sheet(middle), place(&chart, middle, 0));
             for (u, v, up) in [(0.0_f64, 7.0_f64, 0.0), (3.0, 20.0, 0.8), (-40.0, 31.0, -0.9), (11.0, -5.0, 1.0)] {
-                // A cone has only one side of its tip.
+                // A cone lies on one side of its tip only.
                 let v = if matches!(chart, Chart::Cone(_)) { v.abs() + 30.0 } else { v };
                 let (here, there) = (sheet.at(DVec3::new(u, v, middle + up)).place, placed(&lie, u, v, up));
                 assert!(here.distance(there) < 1e-6, "{text}: {here} {there}");

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 /// Maximum number of faces drawn; with more, the file would be too large for browsers.
 const MOST_FACES: usize = 200_000;
 
-/// The lean from the vertical up to which each band goes, °, and its colour.
+/// The upper limit of the lean from the vertical in each band, °, and its colour.
 const BANDS: [(f64, &str); 4] = [(30.0, "#c9d4df"), (45.0, "#f2d06b"), (60.0, "#ee9a4d"), (90.0, "#cf4a3f")];
 /// The colour of what lies on the plate.
 const PLATE: &str = "#7d8894";

@@ -244,7 +244,7 @@ async function start() {
     return;
   }
   if (!deep) withoutSolid("This browser has no WebGL 2, so there is no 3-D view; every layer is shown from above.");
-  // Where the program should not be started, the place is seen first.
+  // The page opens at the place for which the program should not be started.
   const worst = document.querySelector(".refused button")?.dataset;
   if (worst) {
     shown.below = $("show-below").checked = true;

@@ -56,7 +56,7 @@ function pathOf(points, path = new Path2D()) {
   return path;
 }
 
-// What of a pass is to be drawn, as paths with a colour and a width each.
+// The parts of a pass to be drawn, as paths with a colour and a width each.
 function strokes(pass, layer, limit = shown.until) {
   const until = Math.min(pass.end, limit), { times, along } = pass, wide = along[0][0];
   if (along.length > 1) {
@@ -166,7 +166,7 @@ function drawEnds(ctx, passes) {
     dot(ctx, x, y, (radius + Math.min(1.2, radius / 3)) * pixel, "#ffffff");
     dot(ctx, x, y, radius * pixel, colour);
   };
-  // Many narrow passes would lie hidden below their ends.
+  // Ends of a fixed size would hide many narrow passes.
   const room = ({ along }) => Math.min(Math.max(0.3 * along[0][0] * view.scale, 1.5), 5);
   for (const pass of ends) mark(pass.xy.at(-2), pass.xy.at(-1), room(pass), colours.end);
   for (const pass of passes) mark(pass.xy[0], pass.xy[1], 0.64 * room(pass), colours.start);

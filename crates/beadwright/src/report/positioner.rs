@@ -6,7 +6,7 @@ use crate::profile::Profile;
 use crate::program::{Instruction, Positioner, PositionerAxis, Programmer, Turning};
 use glam::DVec2;
 
-/// Maximum number of stretches of a curve, each of some passes.
+/// Maximum number of sections of a curve, each of several passes.
 const STRETCHES: usize = 300;
 /// Limits are drawn where they lie no farther apart than this many times the range that is used, or half a turn, °.
 const WIDE: f64 = 4.0;
@@ -38,7 +38,7 @@ impl Stretch {
         Self { first: self.first, least: self.least.min(next.least), most: self.most.max(next.most), last: next.last }
     }
 
-    /// In the order in which it comes by them if it comes by each once.
+    /// The angles in the order in which the axis reaches them, if it reaches each once.
     fn angles(&self) -> [f64; 4] {
         let (a, b) = if self.first <= self.last { (self.least, self.most) } else { (self.most, self.least) };
         [self.first, a, b, self.last]
@@ -104,7 +104,7 @@ impl Turns {
         stretches.flatten().collect()
     }
 
-    /// The range between the limits, unless it would flatten the curve.
+    /// The limits as a range to be drawn; `None` if they would flatten the curve.
     fn within(&self, number: usize, axis: &PositionerAxis) -> Option<(f64, f64, String)> {
         let whole = self.passes.iter().map(|pass| pass[number]).reduce(Stretch::with)?;
         let [least, most] = axis.limits;

@@ -10,7 +10,7 @@ const POINTS: usize = 1200;
 /// Maximum number of layer marks.
 const MARKS: usize = 12;
 
-/// The page of a walk.
+/// The page of a reach analysis.
 pub fn page(part: &str, cell: &Cell, reach: &Reach, suggestion: Option<&Suggestion>) -> Sheet {
     let verdict = if reach.is_reachable() { "can be welded" } else { "cannot be welded" };
     let lead = format!(
@@ -70,7 +70,7 @@ fn joint_rows(cell: &Cell, reach: &Reach) -> Vec<Row> {
     (0..6).filter_map(row).collect()
 }
 
-/// Distance of each stop from the beginning along the path, m.
+/// Distance of each stop from the start along the path, m.
 fn way(reach: &Reach) -> Vec<f64> {
     let mut total = 0.0;
     let mut last = None;

@@ -2,7 +2,7 @@
 
 // `inSpace`: layers are not level.
 function newScene(canvas, inSpace = false) {
-  // Where the processor draws, smooth edges cost more than they show.
+  // Where the CPU draws, smooth edges cost more than they are worth.
   const gl = canvas.getContext("webgl2", { alpha: false, preserveDrawingBuffer: true, antialias: !drawnByProcessor() });
   if (!gl) return null;
   const scene = {
@@ -84,8 +84,8 @@ function clearLayers(scene) {
   scene.layers = [];
 }
 
-// The layers to draw up to the highest one shown: in groups of `stride`, of which only the top one is drawn, as high as
-// all of them.
+// The layers to draw up to the highest one shown: in groups of `stride`, of each only the top one, as high as the
+// group.
 function grouped(layers, highest, stride) {
   const list = [];
   for (let first = 0; first <= highest; first += stride) {

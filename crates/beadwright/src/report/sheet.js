@@ -27,7 +27,7 @@ function slide(parent, labels, first, name, changed) {
   announce();
 }
 
-// What is wider than the window says so.
+// Adds a hint to what is wider than the window.
 function hintAtWide(card) {
   const hint = make("p", card, { className: "aside", textContent: "More to the right: scroll sideways →" });
   card.before(hint);
@@ -70,7 +70,8 @@ function showMaps(card) {
 
 document.querySelectorAll(".maps").forEach(showMaps);
 
-// The button in a head sorts its table, once more the other way round; numbers by their size, all else as text.
+// The button in a column head sorts the table by it; another press reverses the order. Numbers sort by value, all
+// else as text.
 function sortBy(table, column) {
   const down = table.dataset.sorted === `${column} up`;
   table.dataset.sorted = `${column} ${down ? "down" : "up"}`;

@@ -113,7 +113,7 @@ impl Sheet {
         template::expand(include_str!("sheet.html"), &values)
     }
 
-    /// Those of the 3-D view only where there is one.
+    /// The scripts; those of the 3-D view only where there is one.
     fn scripts(&self) -> String {
         let deep = [
             include_str!("layers.js"),

@@ -14,7 +14,7 @@ pub struct Sketch {
 }
 
 impl Sketch {
-    /// An empty picture of a part of the plane.
+    /// An empty picture of the plane within `bounds`.
     pub fn new(bounds: Bounds, title: &str) -> Self {
         Self { bounds, title: title.to_owned(), body: String::new() }
     }

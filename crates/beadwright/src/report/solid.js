@@ -1,7 +1,7 @@
 // The part in 3-D: reading its layers into scene.js bit by bit, what is drawn, pointers and keys.
 
 const solid = $("solid");
-// What a picture takes is in pace.js.
+// How long a picture may take is in pace.js.
 const space = { ...newPace(), scene: null, camera: newCamera(), matrix: null, moving: 0, hurried: false };
 const QUICK = 12, BATCH = 16, COARSE = 0.5;
 
@@ -37,7 +37,7 @@ async function readSolid() {
     if (performance.now() - drawn < 150 && first + count < heads.length) continue;
     noteSolid(first + count < heads.length ? `Reading layer ${first + count} of ${heads.length}` : "");
     stirSolid();
-    // A timer, not a frame: pages in the background have none.
+    // A timer, since pages in the background get no frames.
     await new Promise(done => setTimeout(done));
     drawn = performance.now();
   }
@@ -92,7 +92,7 @@ function lookNow(much) {
   };
 }
 
-// Fewer pixels while something moves where the processor draws both pictures: most of its time goes into them.
+// Fewer pixels while something moves, where the CPU draws both pictures: most of its time goes into them.
 function sharpen(canvas) {
   const ratio = (window.devicePixelRatio || 1) * (hurried() && solidShown() ? COARSE : 1);
   const [width, height] = [view.width, view.height].map(size => Math.round(size * ratio));
@@ -122,7 +122,7 @@ function stirSolid() {
   redraw();
 }
 
-// Whether something moves where the processor draws: then the layer is drawn plainly too.
+// Whether something moves where the CPU draws: then the layer is drawn plainly, too.
 const hurried = () => space.moving && space.hurried;
 
 function placeMark() {

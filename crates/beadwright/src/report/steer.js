@@ -2,7 +2,7 @@
 
 const SIDES = { 7: [0, 1.55], 1: [0, 0], 3: [Math.PI / 2, 0], 0: [-0.6, 0.55] };
 
-// How much closer a turn of the wheel brings.
+// The factor by which a turn of the wheel zooms.
 const wheelFactor = ({ deltaY, deltaMode }) => Math.exp(-Math.max(-400, Math.min(400, deltaY * (deltaMode ? 33 : 1))) * 0.0016);
 
 // `changed` is called after every move; `hands` may have begin, hover and press (a click that moved nothing).

@@ -2,7 +2,7 @@
 // not level, in a texture of four numbers a texel, ACROSS texels in a row; all passes one after another.
 
 const RECORD = 8, RECORD_IN_SPACE = 12, ACROSS = 512;
-// Points are left out as long as a bead moves by no more than this part of its width.
+// Points are left out as long as a bead moves by no more than this fraction of its width.
 const THINNING = 0.04;
 
 // The points of a pass that are needed: each piece stays within the tolerance of the points that it passes.

@@ -10,7 +10,7 @@ use crate::pass::Pass;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon};
 
-/// Maximum number of layers of which a picture is drawn.
+/// Maximum number of layers that are drawn.
 const PICTURES: usize = 12;
 
 /// Maximum number of rows of the table.

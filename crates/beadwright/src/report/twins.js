@@ -23,7 +23,7 @@ function newTwin(grid, columns, chosen, number) {
   return { canvas, choice, columns, scene: newScene(canvas), pace: newPace(), kinds: new Set(), asked: 0 };
 }
 
-// The colours of the kinds that the two pictures show; what it gives back looks which those are.
+// The key to the colours of the kinds in the two pictures; returns a function that brings it up to date.
 function newKey(card, twins) {
   const key = make("div", card, { className: "key" });
   const items = TWIN_KINDS.map(([word, colour]) => {

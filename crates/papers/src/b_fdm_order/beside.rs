@@ -1,4 +1,5 @@
-//! The paper's printed figures beside ours: lengths and times, merged sub-regions, the ants' tours, and what turns leave.
+//! The paper's printed figures next to ours: lengths and times, merged sub-regions, the ants' tours, and what turns lay
+//! twice.
 
 use super::plans::{LITERAL, OURS, Outcome, Plan, WHOLE};
 use super::plate::{Plate, plates};
@@ -63,7 +64,8 @@ fn absolute_rows(plate: &Plate, sweep: &[At], printer: &Printer) -> [Row; 2] {
     ]
 }
 
-/// Figure 4: the mean and the shortest tour of the ants over the rounds. Gives the picture of the first plate, which is figure 4's.
+/// Figure 4: the mean and the shortest tour of the ants over the rounds. Returns the picture for the first plate, which
+/// is that of figure 4.
 pub(super) fn colony(page: &mut Sheet, printer: &Printer) -> Option<String> {
     page.heading("The ant colony (figure 4)");
     page.text(

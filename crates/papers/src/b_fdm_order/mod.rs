@@ -1,10 +1,10 @@
 //! Han et al. 2018: order of contours, raster angle, merging and order of sub-regions, on three printed plates.
 //!
-//! The paper shows its parts only as pictures, so these are plates of the same kind. Two plans are compared with: parallel
-//! lines across the whole section that jump over holes, as the paper describes them, and sub-regions one by one in scan order,
-//! a step of its method. Both take loops in file order from their first vertex, and scan lines at 0° on one layer and at 90°
-//! on the next. Two layers are planned, since scan lines alternate, and every plate is turned by 0 to 175° in steps of 5°:
-//! one layer of a well-placed plate shows whatever one likes.
+//! The paper shows its parts only as pictures, so these are plates of the same kind. They are compared with two plans:
+//! parallel lines across the whole section that jump over holes, as the paper describes them, and sub-regions one by
+//! one in scan order, a step of its method. Both take loops in file order from their first vertex, and scan lines at 0°
+//! on one layer and at 90° on the next. Two layers are planned, since scan lines alternate, and every plate is turned
+//! by 0 to 175° in steps of 5°: a single layer of a well-placed plate can be made to show anything.
 
 mod beside;
 mod plans;
@@ -36,7 +36,7 @@ fn rotations() -> impl IndexedParallelIterator<Item = f64> {
 struct At {
     degrees: f64,
     steps: [Outcome; STEPS.len()],
-    /// Of [`COLUMNS`], and so on: the plans other than the steps.
+    /// The outcomes of [`COLUMNS`] and of the other plans that are not steps.
     columns: Outcome,
     literal: Outcome,
     fixed: Outcome,
@@ -55,7 +55,7 @@ impl At {
         Self { degrees, steps: STEPS.map(outcome), columns, literal, fixed, alike, whole }
     }
 
-    /// What all steps together save of the plain plan.
+    /// What all steps together save compared with the plain plan.
     fn saved(&self) -> Saved {
         self.ours().saved(self.plain())
     }
@@ -151,7 +151,7 @@ impl Goal {
         cells.map(|text| (text, false)).to_vec()
     }
 
-    /// A saving of the paper is reached on the mean of all rotations; a loss is judged at each of them.
+    /// A saving of the paper counts as reached by the mean of all rotations; a loss is judged at each of them.
     fn shown(&self, plate: &Plate) -> goal::Goal {
         let [mean, worst, _] = self.ours.cells();
         let what = format!("{}: {}, saved on the mean of 36 rotations", plate.name, self.what);
@@ -232,7 +232,7 @@ fn start_cost(plate: &Plate, sweep: &[At]) -> Option<String> {
     let starts = |o: &Outcome| o.paths + plate.polygon.rings().count() as f64;
     let mean = |value: &dyn Fn(&At) -> f64| Spread::of(sweep, value).mean;
     let left = 1.0 - plate.paper[1] / 100.0;
-    // Time and starts that are too many for the goal.
+    // Time and starts in excess of the goal.
     let seconds = mean(&|at| at.ours().seconds - left * at.plain().seconds);
     let fewer = mean(&|at| left * starts(at.plain()) - starts(at.ours()));
     (seconds > 0.0 && fewer > 0.0).then(|| {
@@ -243,7 +243,7 @@ fn start_cost(plate: &Plate, sweep: &[At]) -> Option<String> {
     })
 }
 
-/// What each step saves of the plain plan's time beyond the step before, %.
+/// What each step saves of the plain plan's time beyond the previous step, %.
 fn shares(sweep: &[At]) -> impl Iterator<Item = (&'static Plan, Spread)> + '_ {
     STEPS.iter().enumerate().skip(1).map(|(i, plan)| {
         let saved = |at: &At, step: usize| at.steps[step].saved(at.plain()).time;

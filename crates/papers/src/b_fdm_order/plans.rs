@@ -1,4 +1,4 @@
-//! The ways of planning two layers that are compared, and what each takes.
+//! The ways of planning two layers that are compared, and their figures.
 
 use beadwright::order::Method;
 
@@ -63,7 +63,7 @@ pub const WHOLE: Plan = Plan {
     fill: None,
 };
 
-/// Sub-regions by themselves: the first step of the paper's own method is done already.
+/// Sub-regions one by one, so that the first step of the paper's own method is already done.
 pub const PLAIN: Plan = Plan { name: "plain: file order, sub-regions, 0°/90°", lines: Lines::SubRegions, ..WHOLE };
 
 /// The plain plan with its loops in columns.
@@ -87,7 +87,7 @@ pub const OURS: Plan = Plan {
     fill: Some(Method::LocalSearch),
 };
 
-/// The paper to the letter: ant colony over the improved nearest neighbour, then the nearest region next.
+/// The paper to the letter: ant colony on top of the improved nearest neighbour, then always the nearest region next.
 pub const LITERAL: Plan = Plan {
     name: "the paper's methods",
     loops: Loops::By(Method::AntColony),
@@ -99,7 +99,7 @@ pub const LITERAL: Plan = Plan {
 /// All steps but the raster angle.
 pub const FIXED: Plan = Plan { name: "all steps, fixed 0°/90°", raster: Raster::Zero, ..OURS };
 
-/// All steps but the alternation: what crossing the lines of two layers costs.
+/// All steps but the alternation of directions: shows what crossing the lines of two layers costs.
 pub const ALIKE: Plan = Plan { name: "all steps, 0° on both layers", raster: Raster::Alike, ..OURS };
 
 /// The methods for start points and order of the contours.
@@ -112,20 +112,20 @@ pub(super) const CONTOURS: [(&str, Loops); 6] = [
     ("exact, at up to 48 vertices a loop (ours may begin between)", Loops::By(Method::Exact)),
 ];
 
-/// What a plan of two layers takes.
+/// The figures of a plan of two layers.
 #[derive(Debug, Clone, Copy)]
 pub struct Outcome {
     /// The closed tour through the start points of one layer's contours, mm.
     pub contour_travel: f64,
-    /// Travels of the fill, mm a layer.
+    /// Travels of the fill, mm per layer.
     pub fill_travel: f64,
-    /// Time, s a layer.
+    /// Time, s per layer.
     pub seconds: f64,
-    /// Paths of the fill, a layer.
+    /// Paths of the fill, per layer.
     pub paths: f64,
-    /// Turns, a layer.
+    /// Turns, per layer.
     pub turns: f64,
-    /// Area laid twice at the turns, which is as large as the area missed there (eqs 10 and 11), mm² a layer.
+    /// Area laid twice at the turns, which equals the area missed there (eqs 10 and 11), mm² per layer.
     pub corner_area: f64,
 }
 
@@ -139,7 +139,7 @@ pub struct Saved {
 }
 
 impl Outcome {
-    /// What this one saves of another.
+    /// What this one saves compared with another.
     pub fn saved(&self, of: &Self) -> Saved {
         let percent = |before: f64, after: f64| 100.0 * (1.0 - after / before);
         Saved { travel: percent(of.contour_travel, self.contour_travel), time: percent(of.seconds, self.seconds) }

@@ -4,16 +4,18 @@ use glam::DVec2;
 use planar::{Polygon, Ring};
 use std::f64::consts::TAU;
 
-/// What the paper prints of a plate: for plain scanning, which it calls the zigzag method, and for its own method.
+/// The paper's printed figures for a plate: for plain scanning, which it calls the zigzag method, and for its own
+/// method.
 #[derive(Debug)]
 pub struct Printed {
     /// Which figure shows the plate.
     pub figure: u8,
-    /// Contour travel a layer, mm (table 1).
+    /// Contour travel per layer, mm (table 1).
     pub travel: [f64; 2],
     /// Time of a layer, s (table 1).
     pub seconds: [f64; 2],
-    /// Sub-regions of its section and what remains of them merged (figures 12, 13, 18 and 19), where it says so.
+    /// Sub-regions of its section, and how many remain once they are merged (figures 12, 13, 18 and 19), where the
+    /// paper says so.
     pub regions: Option<[usize; 2]>,
     /// Roughness Ra of top and side, µm (table 3).
     pub roughness: [[f64; 2]; 2],
@@ -53,7 +55,7 @@ pub struct Plate {
     pub polygon: Polygon,
     /// Contour travel and layer time saved in the paper, % (its abstract).
     pub paper: [f64; 2],
-    /// What the paper prints of its plate of this kind.
+    /// The paper's printed figures for its plate of this kind.
     pub printed: &'static Printed,
 }
 
@@ -79,7 +81,7 @@ fn rectangle(x: f64, y: f64, width: f64, height: f64) -> Ring {
     Ring::new([(x, y), (x + width, y), (x + width, y + height), (x, y + height)].map(DVec2::from).to_vec())
 }
 
-/// Plates of the kinds that the paper shows; lying, like the first there.
+/// Plates of the kinds that the paper shows; lying down, like its first one.
 pub fn plates() -> [Plate; 3] {
     let plate = |name, kind: usize, paper, outer: Ring, holes: Vec<Ring>| {
         let holes = holes.into_iter().map(Ring::reversed).collect();
@@ -95,11 +97,11 @@ pub fn plates() -> [Plate; 3] {
         (88.0, 13.0),
         (38.0, 13.0),
     ];
-    // One sub-region below all; a hole adds three, a notch in the upper edge two.
+    // One sub-region at the bottom; each hole adds three, each notch in the upper edge two.
     let notched =
         [(0.0, 0.0), (80.0, 0.0), (80.0, 60.0), (52.0, 60.0), (52.0, 38.0), (30.0, 38.0), (30.0, 60.0), (0.0, 60.0)];
     let three = vec![rectangle(34.0, 20.0, 12.0, 8.0), circle(58.0, 14.0, 8.0), circle(16.0, 16.0, 7.0)];
-    // No two begin or end at one height: 1 + 5 × 3 sub-regions.
+    // No two holes begin or end at the same height: 1 + 5 × 3 sub-regions.
     let five = vec![
         circle(20.0, 50.0, 9.0),
         rectangle(70.0, 44.0, 22.0, 14.0),

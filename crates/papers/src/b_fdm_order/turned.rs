@@ -82,12 +82,12 @@ impl<'a> Turned<'a> {
         Weave::new(&self.scan(0.0), self.settings.stepover).regions().len()
     }
 
-    /// The number of regions that remain of them when they are merged (3.2).
+    /// The number of regions that remain once these are merged (3.2).
     pub fn merged_regions(&self) -> usize {
         Weave::new(&self.scan(0.0), self.settings.stepover).merged().len()
     }
 
-    /// How the tours of the ants through the contours become shorter (figure 4).
+    /// How the tours of the ants through the contours get shorter (figure 4).
     pub fn convergence(&self) -> Vec<Round> {
         ant_colony::convergence(&self.stops(), &Colony::default())
     }
@@ -96,7 +96,7 @@ impl<'a> Turned<'a> {
         self.loops.iter().map(|ring| Stop::ring(ring.points().to_vec())).collect()
     }
 
-    /// What a plan takes.
+    /// The figures of a plan.
     pub fn outcome(&self, plan: &Plan) -> Outcome {
         let laid = self.laid(plan);
         let count = |of: fn(&Laid) -> usize| laid.iter().map(of).sum::<usize>() as f64 / 2.0;
@@ -198,7 +198,7 @@ struct Laid {
     contours: Vec<Vec<DVec2>>,
     fill: Vec<Vec<DVec2>>,
     turns: usize,
-    /// Of the scan lines, radians.
+    /// Angle of the scan lines, radians.
     angle: f64,
 }
 
@@ -208,8 +208,8 @@ impl Laid {
     }
 }
 
-/// Scan lines one after another, to and fro. A path ends where a hole lies in the way, and where the boundary does not lead to
-/// the next line.
+/// Scan lines one after another, to and fro. A path ends where a hole is in the way, and where the boundary does not
+/// lead to the next line.
 fn whole_lines(scan: &Scan) -> Vec<Vec<DVec2>> {
     let (mut paths, mut path): (Vec<Vec<DVec2>>, Vec<DVec2>) = (Vec::new(), Vec::new());
     let (mut first, mut from, mut last) = (0, End::Left, None);
@@ -264,7 +264,7 @@ fn loops(plate: &Polygon, settings: &FillSettings) -> Vec<Ring> {
 fn columns(plate: &Polygon) -> Vec<usize> {
     let bounds = Bounds::of(plate.outer.points().iter().copied()).unwrap_or(Bounds::EMPTY);
     let size = bounds.size();
-    // About as many columns as make their cells square.
+    // The number of columns that makes their cells about square.
     let count = (plate.holes.len() as f64 * size.x / size.y).sqrt().round().max(1.0);
     let place = |hole: &Ring| {
         let centre = tour::centroid(hole.points()) - bounds.min;

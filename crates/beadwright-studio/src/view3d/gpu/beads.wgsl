@@ -9,7 +9,7 @@ struct BeadVertex {
     @location(0) @interpolate(flat) colour: vec3<f32>,
     // Where on the disc that the viewer sees: length 1 on the outline.
     @location(1) place: vec2<f32>,
-    // The part of the normal that `place` gives, and the normal in the middle.
+    // The share of the normal that `place` gives, and the normal in the middle.
     @location(2) side: vec3<f32>,
     @location(3) front: vec3<f32>,
     @location(4) at: vec3<f32>,
@@ -29,7 +29,7 @@ fn way(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     return select(vec3(1.0, 0.0, 0.0), d / l, l > 1e-6);
 }
 
-// Three directions square to each other, the third one given (Duff et al. 2017); those of the axes for z.
+// Three perpendicular directions, the third one given (Duff et al. 2017); the axes themselves for z.
 fn frame(up: vec3<f32>) -> mat3x3<f32> {
     let side = select(-1.0, 1.0, up.z >= 0.0);
     let a = -1.0 / (side + up.z);

@@ -13,7 +13,7 @@ use bytemuck::{Pod, Zeroable};
 use eframe::egui_wgpu::wgpu;
 use std::ops::Range;
 
-/// A chunk is full from this number of segments on.
+/// A chunk is full once it has this number of segments.
 const CHUNK: usize = 1 << 19;
 
 /// Consecutive layers are drawn together until they have this many segments.
@@ -150,7 +150,7 @@ impl Chunk {
         let segments = layers.iter().map(|(_, layer)| layer.len()).sum::<usize>();
         let mut beads: Vec<Bead> = Vec::with_capacity(segments + 1);
         let (mut caps, mut travels, mut dots): (Vec<Cap>, Vec<Point>, Vec<Dot>) = Default::default();
-        // A bead that is not drawn goes before the first one.
+        // A bead that is not drawn precedes the first one.
         let pad = usize::from(begin.beads == 0);
         beads.resize(pad, Bead::zeroed());
         let mut rough = beads.clone();
@@ -175,7 +175,7 @@ impl Chunk {
         self.dots.write(card, begin.dots, &dots);
     }
 
-    /// What the style shows of this chunk; of rough beads, one layer of `every`.
+    /// The ranges of this chunk that the style shows; of rough beads, only one layer in `every`.
     pub(super) fn ranges(&self, scene: &Scene, style: &Style, every: usize) -> Ranges {
         let first = self.slots.partition_point(|slot| slot.layer < *style.layers.start());
         let last = self.slots.partition_point(|slot| slot.layer <= *style.layers.end());
@@ -247,7 +247,7 @@ impl Chunk {
     }
 }
 
-/// Where a layer ends if only that many of its segments are shown.
+/// Where a layer ends if only this number of its segments is shown.
 fn partly(begin: Counts, layer: &LayerBeads, segments: usize) -> Counts {
     let begun = || layer.passes().iter().filter(|pass| !pass.segments.is_empty() && pass.segments.start < segments);
     let dots = begun().map(|pass| 1 + usize::from(pass.segments.end <= segments)).sum::<usize>();

@@ -1,4 +1,4 @@
-// Where the section cuts a bead: a rectangle on the plane, of which the inside of the bead is drawn.
+// Where the section cuts a bead: a rectangle on the plane; only what is inside the bead is drawn.
 
 struct FaceVertex {
     @builtin(position) clip: vec4<f32>,

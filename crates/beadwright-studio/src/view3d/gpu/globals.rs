@@ -39,17 +39,17 @@ pub(super) struct Globals {
     roles: [[f32; 4]; ROLES],
 }
 
-/// Number of roles; the last one is the inside of a model that is cut.
+/// Number of roles; the last one is the inside of a cut model.
 const ROLES: usize = 11;
 
-/// How much rounder than they are beads are shaded: 0 as they are, 1 as circles.
+/// How much rounder beads are shaded than they are: 0 as they are, 1 as circles.
 const ROUNDNESS: f64 = 0.6;
 
 /// How much nearer lines are drawn than the surfaces they lie on, as a fraction of their depth.
 const NUDGE: [f64; 2] = [3e-4, 2e-6];
 
 impl Globals {
-    /// For a picture of that many pixels.
+    /// The data for a picture of this many pixels.
     pub(super) fn new(scene: &Scene, style: &Style, camera: &Camera, pixels: [u32; 2], quality: Quality) -> Self {
         let size = DVec2::new(f64::from(pixels[0]), f64::from(pixels[1]));
         let back = camera.back();
@@ -95,7 +95,7 @@ fn ground(scene: &Scene, every: usize) -> [f32; 4] {
     [middle.x as f32, middle.y as f32, half as f32, every as f32]
 }
 
-/// Normal and offset of the section, mm: what lies beyond is cut away. Nothing lies beyond where there is none.
+/// Normal and offset of the section, mm: what lies beyond is cut away, and without a section nothing is.
 fn section(style: &Style) -> [f32; 4] {
     let plane = style.section.map(|section| section.plane());
     plane.map_or([0.0; 4], |(normal, offset)| normal.extend(offset).as_vec4().into())

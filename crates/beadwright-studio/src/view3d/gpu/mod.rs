@@ -51,7 +51,7 @@ pub(super) struct Quality {
     pub exact: bool,
     /// Whether ends and corners are round.
     pub caps: bool,
-    /// One of this many layers is drawn, as high as all of them; the top one always is.
+    /// One layer in this many is drawn, as high as all of them; the top one always is.
     pub every: usize,
 }
 
@@ -66,7 +66,7 @@ const ACCENTS: [f32; LOOKS] = [0.0, 0.6, 0.95];
 pub(super) struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// Whether the processor draws because there is no graphics card.
+    /// Whether the CPU draws, because there is no graphics card.
     pub software: bool,
     layout: wgpu::BindGroupLayout,
     globals: [wgpu::Buffer; LOOKS],
@@ -125,7 +125,7 @@ impl Gpu {
         }
     }
 
-    /// A target for a picture of that many pixels, or as many as the card allows.
+    /// A target for a picture of this many pixels, or as many as the card allows.
     pub(super) fn target(&self, pixels: [u32; 2], samples: u32) -> Target {
         let most = self.device.limits().max_texture_dimension_2d;
         Target::new(&self.device, pixels.map(|n| n.clamp(1, most)), samples)

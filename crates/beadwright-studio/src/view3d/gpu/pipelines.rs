@@ -70,7 +70,7 @@ impl Pipelines {
             [buffer(size_of::<Dot>(), VertexStepMode::Instance, &DOT)],
             [buffer(12, VertexStepMode::Vertex, &PLAIN)],
         );
-        // Only what is cut pays for it: its fragments cannot be skipped before they are shaded.
+        // Only cut pictures pay for the section: their fragments cannot be skipped before they are shaded.
         let either = |whole, part| if cut { part } else { whole };
         let bead = either("bead", "cut_bead");
         let (line_colour, dot_colour) = (either("line_colour", "cut_line"), either("dot_colour", "cut_dot"));

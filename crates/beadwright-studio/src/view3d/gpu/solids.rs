@@ -6,10 +6,10 @@ use crate::view3d::lie::Stance;
 use crate::view3d::style::{Plate, Style};
 use glam::{DVec3, Vec3};
 
-/// Sides of what is round.
+/// Number of sides of round bodies.
 const SIDES: usize = 36;
 
-/// Steps from the side of a round end to its top.
+/// Number of steps from the side of a round end to its tip.
 const ROUND: usize = 8;
 
 /// The top of the plate lies this far below the part, mm, so that the grid is seen on it.
@@ -62,7 +62,8 @@ fn capsule(points: &mut Vec<Point>, ends: [DVec3; 2], radius: f64) {
     revolved(points, from, axis, &first.chain(last).collect::<Vec<_>>());
 }
 
-/// A body of revolution about an axis of length 1: how far along it, how far from it, and the role up to the next ring.
+/// A body of revolution about an axis of length 1; `profile` gives distances along the axis and from it, mm, and the
+/// role up to the next ring.
 fn revolved(points: &mut Vec<Point>, from: Vec3, axis: Vec3, profile: &[(f32, f32, u32)]) {
     let (i, j) = axis.any_orthonormal_pair();
     let at = |side: usize, (along, radius, _): (f32, f32, u32)| {

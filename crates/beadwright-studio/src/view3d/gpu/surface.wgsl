@@ -50,7 +50,7 @@ fn glass(in: SurfaceVertex) -> @location(0) vec4<f32> {
     return clear(in);
 }
 
-// Clearer where it is looked at squarely, as glass is.
+// Clearer where it is seen face-on, as glass is.
 fn clear(in: SurfaceVertex) -> vec4<f32> {
     let normal = facing(in.at);
     let square = abs(dot(normal, to_viewer(in.at)));

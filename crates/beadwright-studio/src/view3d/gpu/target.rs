@@ -4,7 +4,7 @@ use eframe::egui_wgpu::wgpu;
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// What egui shows.
+/// The format that egui shows.
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// Depths, 1 near and 0 far.

@@ -183,10 +183,10 @@ fn changes_are_asked_about_before_they_are_lost() {
         harness.run_steps(2);
     };
     close(&mut harness);
-    assert!(harness.query_by_label("Without saving they are lost.").is_some());
+    assert!(harness.query_by_label("They are lost if you do not save.").is_some());
     click(&mut harness, "Keep working");
-    assert!(harness.query_by_label("Without saving they are lost.").is_none());
+    assert!(harness.query_by_label("They are lost if you do not save.").is_none());
     harness.state_mut().save_to(&folder.path().join("a.bwp"));
     close(&mut harness);
-    assert!(harness.query_by_label("Without saving they are lost.").is_none());
+    assert!(harness.query_by_label("They are lost if you do not save.").is_none());
 }

@@ -20,11 +20,11 @@ use glam::DVec3;
 pub struct Scan {
     /// The points, mm.
     pub points: Vec<DVec3>,
-    /// Triangles between them, by their numbers; none of a cloud of points.
+    /// Triangles between them, by index; empty for a cloud of points.
     pub triangles: Vec<[u32; 3]>,
     /// The format, for people: `PLY`.
     pub format: &'static str,
-    /// Points that the file has without a height.
+    /// Number of points in the file that have no height.
     pub without_height: usize,
 }
 
@@ -70,7 +70,7 @@ impl From<Cancelled> for ScanError {
 /// Reads a scan; its content shows the format.
 ///
 /// # Errors
-/// [`ScanError`] with the line where one is at fault.
+/// [`ScanError`], which names the line where one is at fault.
 pub fn read(bytes: &[u8], task: &Task) -> Result<Scan, ScanError> {
     let (points, triangles, format) = if bytes.starts_with(b"ply") {
         let (points, triangles) = model::ply_points(bytes, task)?;
@@ -95,7 +95,7 @@ pub fn read(bytes: &[u8], task: &Task) -> Result<Scan, ScanError> {
     Ok(Scan { points, triangles, format, without_height })
 }
 
-/// The surface in a file of solids, which need not be closed in a scan.
+/// The surface in a file of solids; in a scan it need not be closed.
 fn surface(bytes: &[u8], task: &Task) -> Result<Surface, ImportError> {
     let import = model::import_damaged(bytes, task)?;
     let millimetres = import.units.unwrap_or(Units::Millimetre).in_mm();
@@ -125,13 +125,13 @@ fn seen(points: Vec<DVec3>, triangles: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]
 /// Points, triangles between them, and the format.
 type Surface = (Vec<DVec3>, Vec<[u32; 3]>, &'static str);
 
-/// Lines with their numbers, from 1, without comments and empty ones.
+/// Lines with their numbers, from 1, without comments and blank lines.
 fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let numbered = (1..).zip(text.lines().map(str::trim));
     numbered.filter(|(_, line)| !line.is_empty() && !line.starts_with('#') && !line.starts_with("//"))
 }
 
-/// A number, or what scanners write where they saw nothing.
+/// A number, or what scanners write where they saw nothing (NaN).
 fn number(field: &str) -> Option<f64> {
     match field.trim() {
         "" | "-" => Some(f64::NAN),

@@ -1,17 +1,17 @@
 //! Lines of x, y, z: CSV with or without a header, XYZ, touched points. Further columns, such as colours, are skipped.
 //!
-//! A header names the columns `x`, `y`, `z` in any order, with their unit if that is not mm: `x_m`, `z (in)`. Values are
-//! separated by commas, semicolons, tabs or spaces; with all but commas a decimal comma is understood. A first line with a
-//! single number, the count of points, is skipped.
+//! A header names the columns `x`, `y`, `z` in any order, with their unit if that is not mm: `x_m`, `z (in)`. Values
+//! are separated by commas, semicolons, tabs or spaces; a decimal comma is understood with any separator but the comma.
+//! A first line with a single number, the number of points, is skipped.
 
 use super::{ScanError, lines, number};
 use glam::DVec3;
 
-/// Units of columns, and how many mm they are.
+/// Units of columns, and their length in mm.
 const UNITS: [(&str, f64); 7] =
     [("", 1.0), ("mm", 1.0), ("cm", 10.0), ("m", 1e3), ("um", 1e-3), ("µm", 1e-3), ("in", 25.4)];
 
-/// The points, with heights that are not numbers where none was measured.
+/// The points; heights that were not measured are NaN.
 pub(super) fn read(text: &str) -> Result<Vec<DVec3>, ScanError> {
     let mut lines = lines(text).peekable();
     let Some(&(_, first)) = lines.peek() else { return Ok(Vec::new()) };
@@ -25,14 +25,14 @@ pub(super) fn read(text: &str) -> Result<Vec<DVec3>, ScanError> {
         columns = Columns::named(&split.fields(head)).map_err(|reason| ScanError::Line { line, reason })?;
         lines.next();
     }
-    // The header may be separated differently.
+    // The separator of the header may be another one.
     let split = lines.peek().map_or(split, |(_, line)| Split::of(line));
     lines
         .map(|(line, text)| columns.point(&split.fields(text)).map_err(|reason| ScanError::Line { line, reason }))
         .collect()
 }
 
-/// How lines are split.
+/// How lines are split into values.
 #[derive(Clone, Copy)]
 enum Split {
     Semicolons,

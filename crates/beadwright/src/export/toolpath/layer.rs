@@ -12,7 +12,7 @@ use planar::Polygon;
 use std::collections::BTreeMap;
 use uuid::Uuid;
 
-/// The lines of a run: the values of each, and the tag of the point that closes it (0 for none).
+/// The lines of a run: the values of each, and the tag of the point at its end (0 for none).
 pub(super) fn lines(run: &Run<'_>) -> (Vec<Values>, Vec<u32>) {
     let mut own = run.pass.segments().peekable();
     let mut pace = own.peek().map_or(0.0, |segment| segment.pace);
@@ -54,7 +54,7 @@ pub(super) fn xml(layer: &Layer, runs: &[(&Run<'_>, Vec<Values>, Vec<u32>)], sty
     text
 }
 
-/// What the extension has no words for: where the layer lies, and its outlines.
+/// What the extension cannot express: where the layer lies, and its outlines.
 fn data(text: &mut String, layer: &Layer) {
     let (z, height) = (units(layer.z), units(layer.height));
     let goes_on = if layer.lit.after { " goes_on=\"1\"" } else { "" };
@@ -97,7 +97,7 @@ fn segment(text: &mut String, run: &Run<'_>, values: &[Values], tags: &[u32], st
     text.push_str("</segment>\n");
 }
 
-/// The beginning of a point, with the torch's orientation where it leans.
+/// The beginning of a point element, with the torch's orientation where it leans.
 fn point(text: &mut String, at: DVec3, lean: Option<DVec2>) {
     let name = if lean.is_some() { "point6d" } else { "point3d" };
     text.push_str(&format!("<{name} x=\"{}\" y=\"{}\" z=\"{}\"", units(at.x), units(at.y), units(at.z)));

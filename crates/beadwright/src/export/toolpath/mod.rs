@@ -9,8 +9,8 @@
 //! | `read` | a package becomes a plan again |
 //! | `read_layer` | its layers |
 //!
-//! Coordinates are whole multiples of 0.1 µm, as in plan.json. What the extension has no words for is in a namespace of our
-//! own, which other readers skip: the kind of a pass, pace and wire feed, outlines, and the whole profile.
+//! Coordinates are whole multiples of 0.1 µm, as in plan.json. What the extension cannot express is in a namespace of
+//! our own, which other readers skip: the kind of a pass, pace and wire feed, outlines, and the whole profile.
 
 mod layer;
 mod read;
@@ -31,7 +31,7 @@ pub(super) const FORMAT: Format = Format {
 /// Our own namespace.
 const OWN: &str = "https://github.com/beadwright/beadwright/3mf/2026/11";
 
-/// Length of a unit of coordinates, mm.
+/// Length of one coordinate unit, mm.
 const UNIT_MM: f64 = 1e-4;
 
 /// The tag of points that are only there because a closed pass overlaps its own beginning.
@@ -40,7 +40,7 @@ const OVERLAP: u32 = 1;
 /// The tag of points between those of the plan, where hot start or lead-out changes the speed.
 const BETWEEN: u32 = 2;
 
-/// A length in units of coordinates.
+/// A length in coordinate units.
 fn units(mm: f64) -> i64 {
     (mm / UNIT_MM).round() as i64
 }

@@ -1,8 +1,8 @@
 //! A package with toolpaths becomes a plan.
 //!
-//! Beadwright's own files come back whole. From others, every pass becomes one with the width of its profile and the speed
-//! as its pace; waits belong to the Beadwright profile that it is judged with. What cannot be followed exactly (a value that
-//! changes within a line, an unknown segment) is refused, as the extension demands.
+//! Beadwright's own files are read back completely. From other files, each pass takes the width of its profile, and the
+//! speed as its pace; waits come from the Beadwright profile that the plan is judged with. What cannot be followed
+//! exactly (a value that changes within a line, an unknown segment) is refused, as the extension demands.
 
 use super::read_layer;
 use crate::layer::{Extent, Layer, Lit};
@@ -23,7 +23,7 @@ const KNOWN: [&str; 4] =
 /// A value of a profile, and how the factors of a line change it.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Value {
-    /// Without a factor.
+    /// The value without a factor.
     base: f64,
     /// The letter of the factor, with the values that it has at 0 and at 1.
     modifier: Option<(char, f64, f64)>,
@@ -102,7 +102,7 @@ pub fn read(bytes: &[u8]) -> Result<PlanFile, ImportError> {
     Ok(PlanFile { header, settings: profile.as_ref().map(plan::deposit_settings), profile, layers })
 }
 
-/// Where the part lies: as the file says (six numbers, mm), or where its passes lie.
+/// Where the part lies: as the file says (six numbers, mm), or else where its passes lie.
 fn extent(bounds: &str, layers: &[Layer]) -> Extent {
     let numbers: Vec<f64> = bounds.split_whitespace().filter_map(|text| text.parse().ok()).collect();
     match (&numbers[..], layers.len()) {
@@ -217,7 +217,7 @@ impl Style {
 }
 
 impl Value {
-    /// The value on the line that a point closes.
+    /// The value on the line that ends at a point.
     pub(super) fn on(&self, point: &Element) -> Result<f64, ImportError> {
         let Some((letter, low, high)) = self.modifier else { return Ok(self.base) };
         let factor = optional(point, letter.encode_utf8(&mut [0; 4]))?;

@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 use std::collections::BTreeMap;
 
-/// A point with the values of the line that it closes.
+/// A point with the values of the line that ends there.
 struct Vertex {
     at: DVec3,
     tag: u32,
@@ -167,7 +167,8 @@ impl<'a> Reader<'a> {
             _ => number("z")? * unit,
         };
         if element.name() == "point6d" {
-            // Beadwright leans the torch by the profile; what cannot be an orientation is refused anyway.
+            // Beadwright takes the torch's lean from the profile, but what cannot be an orientation is refused all the
+            // same.
             let q = [number("i")?, number("j")?, number("k")?, number("w")?];
             if q.iter().map(|v| v * v).sum::<f64>() < 1e-12 {
                 return Err(broken("a point has an orientation (i, j, k, w) of 0, which is not valid"));
@@ -216,7 +217,7 @@ impl<'a> Reader<'a> {
 }
 
 impl Style {
-    /// Width (mm) and pace (mm/s) of the line that an element closes.
+    /// Width (mm) and pace (mm/s) of the line that ends at an element's point.
     fn values(&self, element: &Element) -> Result<(f64, f64), ImportError> {
         let width = self.width.ok_or_else(|| broken("its profile gives no beadwidth: it is not for deposition"))?;
         let pace = self.pace.or(self.speed);
@@ -226,13 +227,13 @@ impl Style {
 }
 
 impl Open<'_> {
-    /// The pass of a chain of lines; in our own files, what only welding added is taken away again.
+    /// The pass of a chain of lines; in our own files, what only welding added (such as overlap) is removed again.
     fn pass(self, ours: bool) -> Pass {
         let Self { style, closed, shape, wait, mut vertices } = self;
         if ours {
             vertices.retain(|vertex| ![OVERLAP, BETWEEN].contains(&vertex.tag));
         }
-        // The values of a line are at its end; those of the closing line of a loop at the first point.
+        // The values of a line are given at its end; those of the closing line of a loop at the first point.
         let is_loop = shape == "loop";
         let returns = vertices.len() > 2 && vertices.first().zip(vertices.last()).is_some_and(|(a, b)| a.at == b.at);
         let last = vertices.pop_if(|_| closed && returns);

@@ -1,7 +1,7 @@
 //! The profiles of a file: one for each kind of pass, thickness of layer and pair of waits.
 //!
 //! What changes along passes is written as a factor between the least and the greatest value of the whole plan, as the
-//! extension asks for: a machine that cannot go that far knows before it begins.
+//! extension asks: a machine that cannot cover that range knows before it begins.
 
 use super::super::walk::Run;
 use crate::number::fixed;
@@ -18,7 +18,7 @@ struct Modifier {
     factor: char,
     /// The attribute of the profile that it changes.
     attribute: &'static str,
-    /// Its value without change.
+    /// Its unmodified value.
     nominal: f64,
     low: f64,
     high: f64,
@@ -29,7 +29,7 @@ pub(super) type Values = [f64; 4];
 
 const NAMES: [(char, &str); 4] = [('e', "beadwidth"), ('f', "depositionspeed"), ('g', "bw:pace"), ('h', "bw:wirefeed")];
 
-/// What is the same along a pass.
+/// What is constant along a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Style {
     kind: &'static str,
@@ -46,7 +46,7 @@ impl Style {
         Self { kind: PassKind::name(run.pass.kind), height: whole(run.layer.height, 1e3), waits }
     }
 
-    /// Its name in the file, which no other has.
+    /// Its name, unique within the file.
     fn name(&self) -> String {
         let mut name = format!("{} {} mm", self.kind, fixed(self.height as f64 / 1e3, 3));
         for (wait, when) in self.waits.iter().zip(["before", "after"]).filter(|(wait, _)| **wait > 0) {
@@ -65,12 +65,12 @@ pub(super) struct Styles {
 }
 
 impl Styles {
-    /// The profiles for passes whose lines have these values; `nominal` are those of the nominal bead.
+    /// The profiles for passes whose lines have these values; `nominal` gives those of the nominal bead.
     pub(super) fn new(runs: &[Run<'_>], lines: &[Vec<Values>], nominal: Values, file: Uuid) -> Self {
         let modifier = |k: usize| {
             let values = || lines.iter().flatten().map(|values| values[k]);
             let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-            // The range as it is written, to 6 decimals, holds every value.
+            // Once rounded to 6 decimals, the range must still hold every value.
             let (low, high) = ((low * 1e6).floor() / 1e6, (high * 1e6).ceil() / 1e6);
             let (factor, attribute) = NAMES[k];
             let steady = high - low < 2e-6;

@@ -39,12 +39,12 @@ pub(super) fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     package.finish()
 }
 
-/// The path of the file of a layer, which has an index from 0.
+/// The path of the file of the layer with this index, from 0.
 fn layer_path(index: usize) -> String {
     format!("/Toolpath/Layers/layer{:05}.xml", index + 1)
 }
 
-/// The identifiers in a file: the same plan has the same ones.
+/// The identifiers in a file: the same plan always has the same ones.
 struct Ids {
     file: Uuid,
     object: Uuid,
@@ -63,7 +63,7 @@ impl Ids {
     }
 }
 
-/// The lowest and highest places of the metal, mm; none without any.
+/// The lowest and highest corner of the metal, mm; `None` without any metal.
 fn extent(runs: &[Run<'_>]) -> Option<(DVec3, DVec3)> {
     let pieces = || runs.iter().flat_map(|run| &run.pieces);
     pieces().next()?;

@@ -1,13 +1,13 @@
 //! Level layers: layers as high as their metal fills them, and metal where the slice needs it.
 //!
-//! Beads that overlap by the rule lie side by side and fill a wide layer. At its rim nothing overlaps them, so that the
-//! beads of a narrow part hold less metal than its slices: n beads a stepover of ρ widths apart fill n ρ / ((n − 1) ρ + 1) of
-//! them, two 0.83 and ten 0.96 for ρ = 0.715. And a small part rises faster than its metal fills it, since its corners and
-//! its rim stay rounded. [`slabs`] looks at slices of the part, lays each on itself in the model, and places the layers as high
-//! as their beads fill them, where a wide layer is `layers.height` high. Within a layer [`share`] then shifts metal from beads
-//! that have neighbours to those that have none, by the pace: every piece of a pass fills the strip of the slice that lies
-//! nearest to it, from the metal below as the model builds it, and beads that become wider at the outline move inwards
-//! ([`rim`]).
+//! Beads that overlap as the profile says fill a wide layer. At its rim no neighbour overlaps them, so the beads of a
+//! narrow part hold less metal than its slices: n beads at a stepover of ρ widths fill n ρ / ((n − 1) ρ + 1) of them,
+//! which is 0.83 for two and 0.96 for ten with ρ = 0.715. A small part, on the other hand, rises faster than its metal
+//! fills it, since its corners and its rim stay rounded. [`slabs`] takes sample slices of the part, lays each
+//! repeatedly on itself in the model, and makes layers as high as their beads fill them; a wide layer is
+//! `layers.height` high. Within a layer [`share`] then shifts metal from beads with neighbours to those without,
+//! through the pace: every piece of a pass fills the strip of the slice that lies nearest to it, from the metal below
+//! as the model builds it, and beads that become wider at the outline move inwards ([`rim`]).
 
 mod rim;
 mod share;
@@ -48,7 +48,7 @@ pub(super) fn slabs(
     let (top, height) = (mesh.bounds().1.z.max(0.0), profile.layers.height);
     let count = ((top / height) as usize).clamp(1, HEIGHTS);
     let apart = top / count as f64;
-    // A slice lies in the middle of its slab.
+    // Each slice is cut in the middle of its slab.
     let looked_at = (0..count).map(|k| Slab { z: (k as f64 + 0.5) * apart + 0.5 * height, height }).collect();
     let slicer = Slicer::of_slabs(mesh, looked_at, profile.slice_options(), task)?.on(&profile.layers.chart);
     const { assert!(HEIGHTS <= BATCH) };
@@ -75,7 +75,7 @@ fn are_alike(a: &Slice, b: &Slice) -> bool {
     near(a.area(), b.area()) && near(outline(a), outline(b))
 }
 
-/// A slice with its passes. Which way scan lines run hardly matters for the metal.
+/// A slice with its passes. The direction of scan lines hardly matters for the metal.
 fn filled(slice: Slice, strategy: &dyn Strategy, profile: &Profile, middle: DVec2) -> Layer {
     let turn = turns::turn_of(&slice, profile);
     let planned = Planned { slice, raster_angle: None, solid: None };
@@ -90,10 +90,11 @@ fn filled(slice: Slice, strategy: &dyn Strategy, profile: &Profile, middle: DVec
     Layer { height, islands, passes, ..Layer::default() }
 }
 
-/// A layer is laid on itself this many times to see how high it is.
+/// A layer is laid on itself this many times to find its height.
 const REPEATED: usize = 6;
 
-/// How high a layer is whose beads hold what they need once it lies on others like it; `None` for one without beads.
+/// Height of a layer on others like it, mm, at which its beads hold the metal that they need; `None` for one without
+/// beads.
 fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
     let (region, bounds) = (share::region(&layer, profile), layer::bounds(std::slice::from_ref(&layer))?);
     let mut below = Stack::new(&bounds, deposit_settings(profile).fitted_to(&bounds, REPEATED));
@@ -110,13 +111,15 @@ fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
     Some(layer.height)
 }
 
-/// This part of the metal of a layer may be less than its beads hold as planned. With the median, the other beads would be
-/// narrower and leave voids; layers that are a little too high have humps, which the next layer remelts.
+/// This fraction of a layer's metal may be in beads that need less than they hold as planned. With the median, the
+/// other beads would be narrower and leave voids; layers that are a little too high have humps, which the next layer
+/// remelts.
 const FILLED: f64 = 0.35;
 
-/// How high a layer is on what lies below: halfway from the height to which most of its beads fill it ([`FILLED`]) to the
-/// lowest at which no more metal is laid than is needed, since a bead can hold no less than 1 / [`share::MOST`] of its own.
-/// If more is laid at the former, it is higher by as much as takes up the surplus.
+/// Height of a layer on the metal below, mm: halfway between the height to which most of its beads fill it ([`FILLED`])
+/// and the lowest height at which no more metal is laid than needed, since a bead cannot hold less than 1 /
+/// [`share::MOST`] of its own metal. If too much is laid at the former height, the layer is made higher, until it takes
+/// up the surplus.
 fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> Option<f64> {
     let shares = share::shares(layer, Some(below), None, region, profile);
     let mut pieces: Vec<(f64, f64)> =
@@ -129,7 +132,8 @@ fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> O
         sum >= FILLED * all
     })?;
     let (least, most) = (pieces.first()?.0, pieces.last()?.0);
-    // Metal laid beyond what is needed, in a layer so high that beads which need `need` hold what they do as planned.
+    // Metal laid beyond what is needed, if the layer is so high that beads with the need `need` hold their planned
+    // metal.
     let surplus = |need: f64| -> f64 {
         let laid = |needed: f64| (needed / need).clamp(share::MOST.recip(), share::MOST);
         pieces.iter().map(|(needed, held)| held * (laid(*needed) - needed / need)).sum()
@@ -143,7 +147,7 @@ fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> O
     Some((layer.height / need).clamp(THICKNESS.start() * usual, THICKNESS.end() * usual))
 }
 
-/// Where a rising function is zero between two values, halved until they hardly differ.
+/// The zero of a rising function between two values, found by bisection.
 fn root(rising: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     for _ in 0..20 {
         let middle = 0.5 * (low + high);
@@ -152,7 +156,7 @@ fn root(rising: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The value at a height between two that are known; beyond the first or the last, that one's value.
+/// The value at a height, interpolated between known ones; constant beyond the first and the last.
 fn between(known: &[(f64, f64)], z: f64) -> Option<f64> {
     let behind = known.partition_point(|(at, _)| *at < z);
     match (behind.checked_sub(1).and_then(|i| known.get(i)), known.get(behind)) {
@@ -161,19 +165,20 @@ fn between(known: &[(f64, f64)], z: f64) -> Option<f64> {
     }
 }
 
-/// Layers up to this factor higher than usual count as usual.
+/// Layers higher than usual by up to this factor still count as usual.
 const USUAL: f64 = 1.03;
-/// Rather than adding one more layer, usual ones are stretched by a remainder of up to this part of a layer,
+/// Rather than adding one more layer, usual ones are stretched over a remainder of up to this fraction of a layer,
 const STRETCHED: f64 = 0.8;
-/// and others by one of up to this part.
+/// and others over one of up to this fraction.
 const STRETCHED_LESS: f64 = 0.3;
 
-/// Layers of about `usual` that rise as `rise` says of their middle, stretched or compressed to end at `top` (all mm).
+/// Layers of about `usual` height, each as high as `rise` gives for its middle, stretched or compressed to end at `top`
+/// (all mm).
 fn stacked(top: f64, usual: f64, rise: impl Fn(f64) -> f64) -> Vec<Slab> {
     let (mut slabs, mut z) = (Vec::new(), 0.0);
     while slabs.len() < MAX_LAYERS {
         let height = rise(z + usual / 2.0);
-        // Layers about as high as usual rather than others: lower ones leave voids between their beads, higher ones are
+        // Layers of about the usual height are preferred: lower ones leave voids between their beads, higher ones are
         // overfilled.
         let is_usual = top <= USUAL * usual * slabs.len() as f64;
         let rest = if is_usual { STRETCHED } else { STRETCHED_LESS };

@@ -1,25 +1,25 @@
 //! Wider beads stay inside the outline.
 //!
-//! A bead along the outline is laid half its planned width inside. Where it gets more metal than planned it becomes wider.
-//! If it stayed, it would do so on both sides alike, with metal outside the part; if it moved inwards by all of it, it would
-//! pile up on its neighbour. So it moves by [`INWARDS`] of what would lie outside.
+//! A bead along the outline is laid half its planned width inside. With more metal than planned it becomes wider. If it
+//! stayed in place, it would widen on both sides, with metal outside the part; if it moved inwards by the full excess,
+//! it would pile up on its neighbour. So it moves by [`INWARDS`] of that excess.
 
 use glam::DVec2;
 use planar::{Region, Ring};
 use rstar::RTree;
 use rstar::primitives::Line;
 
-/// A bead moves by this part of what would lie outside.
+/// A bead moves by this fraction of what would lie outside.
 const INWARDS: f64 = 0.6;
 /// Shorter distances count as none, mm.
 const NOTHING: f64 = 1e-6;
-/// A place in a corner is moved away from one side after the other, this often.
+/// In a corner a place is moved away from one side after the other, this many times.
 const TURNS: usize = 4;
-/// A place is moved only if that takes it away from the outline by this part of what it should gain: one in the middle of a
-/// wall leaves one side for the other.
+/// A place is moved only if that takes it away from the outline by at least this fraction of the intended distance: in
+/// the middle of a wall it would only leave one side for the other.
 const GAIN: f64 = 0.4;
 
-/// The outline of what the beads of a layer fill.
+/// The outline of the region that the beads of a layer fill.
 pub(super) struct Rim(RTree<Line<[f64; 2]>>);
 
 impl Rim {
@@ -28,7 +28,8 @@ impl Rim {
         Self(RTree::bulk_load(edges.collect()))
     }
 
-    /// How a place of a bead that is laid wider than planned moves inwards, mm; not at all where it stays inside the outline.
+    /// By how much a place of a bead that is laid wider than planned moves inwards, mm; zero where the bead stays
+    /// inside the outline.
     pub(super) fn shift(&self, from: DVec2, planned: f64, laid: f64) -> DVec2 {
         let most = INWARDS * (laid - planned) / 2.0;
         let Some(foot) = self.foot(from).filter(|_| most > NOTHING) else { return DVec2::ZERO };
@@ -45,7 +46,7 @@ impl Rim {
         if gain > GAIN * wanted { at - from } else { DVec2::ZERO }
     }
 
-    /// The nearest point of the outline.
+    /// The point of the outline nearest to `p`.
     fn foot(&self, p: DVec2) -> Option<DVec2> {
         let edge = self.0.nearest_neighbor(&p.to_array())?;
         Some(edge.nearest_point(&p.to_array()).into())

@@ -11,29 +11,29 @@ use crate::wedge::Wedge;
 use glam::DVec2;
 use planar::{Join, Region, polyline};
 
-/// A piece gets at most this many times the metal of its bead.
+/// A piece gets at most this multiple of its bead's planned metal, and at least its inverse.
 pub(super) const MOST: f64 = 1.2;
-/// Pieces on which the metal is found, in widths of the nominal bead.
+/// Length of the pieces for which metal is computed, in widths of the nominal bead.
 const PIECE: f64 = 0.25;
-/// Metal is evened out over this distance before and after a piece, in widths.
+/// Metal is averaged over this distance before and after a piece, in widths.
 const AROUND: f64 = 1.0;
-/// Pieces whose metal differs by no more than this fraction get the same.
+/// Neighbouring pieces whose metal differs by no more than this fraction get the same metal.
 const ALIKE: f64 = 0.06;
-/// Shifts inwards are evened out over this distance, in widths.
+/// Shifts inwards are averaged over this distance, in widths.
 const EVEN: f64 = 0.5;
-/// Points that lie no farther from the line between their neighbours are dropped, in widths.
+/// Points no farther than this from the line between their neighbours are dropped, in widths.
 const STRAIGHT: f64 = 0.006;
-/// A place belongs to a pass at most this far away, in widths.
+/// A place belongs to a pass if it lies no farther away than this, in widths.
 const REACH: f64 = 0.75;
 /// Grid points across a bead, if they are not more than [`MOST_POINTS`].
 const ACROSS: f64 = 8.0;
-/// A layer makes up for this part of what the metal below lacks or has too much of.
+/// Fraction of the lack or excess in the metal below that one layer makes up for.
 const GAIN: f64 = 0.5;
-/// A place is filled to no less and no more than this, in heights of the layer.
+/// Limits of the height to which a place is filled, in heights of the layer.
 const WANTED: std::ops::RangeInclusive<f64> = 0.5..=1.5;
 
-/// A pass in pieces, with the metal (mm³) that each holds, and what a piece with those around it needs as a multiple of what
-/// they hold.
+/// A pass in pieces, with the metal (mm³) that each holds, and the metal that a piece and those around it need, as a
+/// multiple of what they hold.
 pub(super) struct Share {
     pieces: Vec<Segment>,
     pub(super) held: Vec<f64>,
@@ -48,7 +48,7 @@ fn nominal(profile: &Profile) -> Nominal {
     crate::plan::deposit_settings(profile).nominal
 }
 
-/// What the passes of a layer hold and need, on what lies below; without that, on a layer as planned.
+/// What the passes of a layer hold and need on the metal `below`, or, without it, on a layer that came out as planned.
 pub(super) fn shares(
     layer: &Layer,
     below: Option<&Stack>,
@@ -61,7 +61,7 @@ pub(super) fn shares(
     // A dot already holds what its place needs.
     let pieces = |pass: &Pass| if pass.kind == PassKind::Spot { Vec::new() } else { cut(pass, PIECE * width) };
     let pieces: Vec<Vec<Segment>> = layer.passes.iter().map(pieces).collect();
-    // Where beads lie side by side, their metal makes layers.height, whatever the profile says of the bead.
+    // Beads side by side are taken to fill layers.height, whatever the profile's bead would give.
     let wide = nominal.bead.rise(profile.stepover()) / profile.layers.height;
     let ground = |place| below?.height_at(place).map(|ground| ground / wide);
     let own = |place| wedge.map_or(layer.height, |wedge| wedge.own(place));
@@ -91,8 +91,8 @@ pub(super) fn region(layer: &Layer, profile: &Profile) -> Region {
     }
 }
 
-/// Shares out the metal of a layer: each piece of a pass is laid at the pace that fills the strip of the slice nearest to
-/// it, from what lies below, is as wide as the law of the bead says, and stays inside the outline.
+/// Shares out the metal of a layer: each piece of a pass is laid at the pace that fills the strip of the slice nearest
+/// to it, from the metal below; it is as wide as the bead law gives, and stays inside the outline.
 pub(in crate::plan) fn share(layer: &mut Layer, below: Option<&Stack>, wedge: Option<&Wedge<'_>>, profile: &Profile) {
     let (nominal, region) = (nominal(profile), region(layer, profile));
     let (shares, rim) = (shares(layer, below, wedge, &region, profile), Rim::of(&region));
@@ -134,7 +134,7 @@ fn uncrossed(mut moved: Vec<Pass>, stayed: Vec<Pass>) -> Vec<Pass> {
     }
 }
 
-/// How pieces move once they are laid wider, evened out over `reach` (mm).
+/// By how much pieces move once they are laid wider, averaged over `reach` (mm).
 fn shifts(planned: &[Segment], wider: &[Segment], closed: bool, rim: &Rim, reach: f64) -> Vec<DVec2> {
     let shift = |(planned, wider): (&Segment, &Segment)| {
         let middle = planned.from.midpoint(planned.to).truncate();
@@ -150,7 +150,7 @@ fn shifts(planned: &[Segment], wider: &[Segment], closed: bool, rim: &Rim, reach
     (0..planned.len()).map(even).collect()
 }
 
-/// Where shifted pieces begin, and where the last one of an open pass ends.
+/// Start of each shifted piece, and the end of the last one of an open pass.
 fn places(pieces: &[Segment], shifts: &[DVec2], closed: bool) -> Vec<DVec2> {
     let before = |k: usize| match k {
         0 if closed => shifts.len() - 1,
@@ -171,9 +171,9 @@ fn cut(pass: &Pass, longest: f64) -> Vec<Segment> {
     pass.segments().flat_map(parts).collect()
 }
 
-/// What fills the strip of the slice nearest to each piece, mm³: its `own` height of the layer (mm), more where the `ground` below (mm)
-/// lies too low and less where it lies too high. Where no bead reaches, and at the rim, which no bead fills, it counts as
-/// planned.
+/// Metal that fills the strip of the slice nearest to each piece, mm³: to its `own` height of the layer (mm), more
+/// where the `ground` below (mm) is too low and less where it is too high. Where no bead reaches, and at the rim, which
+/// no bead fills, the ground counts as planned.
 fn strips<'a>(
     layer: &Layer,
     own: impl Fn(DVec2) -> f64,
@@ -227,13 +227,13 @@ fn strips<'a>(
             }
         }
     }
-    // Few points lie across a wall: each counts for enough that they add up to the area of the slice.
+    // Few grid points lie across a wall; they are weighted so that they add up to the area of the slice.
     let each = if inside > 0.0 { region.area() / inside } else { 0.0 };
     strips.iter_mut().for_each(|strip| *strip *= each);
     strips
 }
 
-/// The pieces of a pass that end within a distance (mm) before and after a piece, and the piece itself.
+/// The piece itself, and the pieces of a pass that end within a distance (mm) before and after it.
 fn around(piece: usize, lengths: &[f64], closed: bool, distance: f64) -> impl Iterator<Item = usize> {
     let count = lengths.len();
     let next = move |at: usize, forth: bool| match (forth, closed) {
@@ -252,7 +252,7 @@ fn around(piece: usize, lengths: &[f64], closed: bool, distance: f64) -> impl It
     std::iter::once(piece).chain(side(true)).chain(side(false))
 }
 
-/// The factors, those of neighbours that hardly differ replaced by their mean over the metal held: a program gets a new speed
+/// The factors, with runs of almost equal ones replaced by their mean over the metal held: a program gets a new speed
 /// only where it matters.
 fn in_runs(factors: &[f64], held: &[f64]) -> Vec<f64> {
     let mut even = Vec::with_capacity(factors.len());
@@ -267,8 +267,8 @@ fn in_runs(factors: &[f64], held: &[f64]) -> Vec<f64> {
     even
 }
 
-/// A pass from its pieces, whose ends lie at `places`, without the points between two that are alike and in line within a
-/// tolerance (mm).
+/// A pass joined from its pieces, whose ends lie at `places`, without points between equal pieces that are in line
+/// within a tolerance (mm).
 fn joined(pass: &Pass, pieces: &[Segment], places: &[DVec2], tolerance: f64) -> Pass {
     let height = pass.points.first().map_or(0.0, |point| point.z);
     let (mut points, mut widths, mut paces) = (Vec::new(), Vec::new(), Vec::new());
