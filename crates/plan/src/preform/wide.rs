@@ -5,6 +5,8 @@ use crate::fill::thin::{ThinLimits, split};
 use glam::DVec2;
 use planar::nearest::foot;
 use planar::{Join, Polygon, Region, min_area_rect};
+use rstar::RTree;
+use rstar::primitives::Line;
 
 /// Pieces of the part that no bead reaches are considered from this area on, in squared bead widths.
 const WORTH: f64 = 1e-3;
@@ -54,6 +56,8 @@ fn beads_into(pieces: &Region, region: &Region, width: f64, least: f64) -> Regio
         return Region::default();
     }
     let centres = region.offset(-(1.0 - HAIR) * width / 2.0, Join::ROUND);
+    let edges = centres.rings().flat_map(|ring| ring.edges()).map(|(a, b)| Line::new(a.to_array(), b.to_array()));
+    let centres = RTree::bulk_load(edges.collect());
     beads(&pieces.filter_map(|piece| bead_into(piece, &centres, width)).collect::<Vec<_>>(), width)
 }
 
@@ -82,14 +86,12 @@ fn thin_walls(island: &Polygon, width: f64, room: f64) -> Vec<Vec<DVec2>> {
 }
 
 /// A bead from where its centre may lie into a piece, as far as the piece's tip.
-fn bead_into(piece: &Polygon, centres: &Region, width: f64) -> Option<Vec<DVec2>> {
-    let nearest = |p: DVec2| {
-        let feet = centres.rings().flat_map(|ring| ring.edges()).map(|edge| foot(edge, p));
-        feet.min_by(|a, b| a.distance_squared(p).total_cmp(&b.distance_squared(p)))
-    };
-    let from_centre = |p: DVec2| nearest(p).map_or(0.0, |centre| centre.distance(p));
+fn bead_into(piece: &Polygon, centres: &RTree<Line<[f64; 2]>>, width: f64) -> Option<Vec<DVec2>> {
+    let nearest =
+        |p: DVec2| centres.nearest_neighbor(&p.to_array()).map(|edge| foot((edge.from.into(), edge.to.into()), p));
+    let from_centre = |p: DVec2| (p, nearest(p).map_or(0.0, |centre| centre.distance(p)));
     let points = piece.outer.points().iter().copied();
-    let tip = points.max_by(|a, b| from_centre(*a).total_cmp(&from_centre(*b)))?;
+    let (tip, _) = points.map(from_centre).max_by(|a, b| a.1.total_cmp(&b.1))?;
     let centre = nearest(tip).filter(|centre| centre.distance(tip) > width / 2.0)?;
     Some(vec![centre, tip + (centre - tip).normalize_or_zero() * width / 2.0])
 }
