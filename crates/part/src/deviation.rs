@@ -194,11 +194,11 @@ fn doubts(part: &Mesh, points: &[DVec3], distances: &[f64]) -> Vec<Doubt> {
 }
 
 /// The triangles of a part in an R-tree.
-struct Surface(RTree<Triangle>);
+pub(crate) struct Surface(RTree<Triangle>);
 
 impl Surface {
     /// `None` if no triangle has an area.
-    fn of(part: &Mesh) -> Option<Self> {
+    pub(crate) fn of(part: &Mesh) -> Option<Self> {
         let corner = |i: u32| part.vertices.get(i as usize).copied();
         let triangle = |&[a, b, c]: &[u32; 3]| Some(Triangle { corners: [corner(a)?, corner(b)?, corner(c)?] });
         let triangles = part.triangles.iter().filter_map(triangle);
@@ -208,14 +208,19 @@ impl Surface {
 
     /// Distance of a point from the surface, mm: positive outside, negative inside.
     fn signed_distance(&self, point: DVec3) -> f64 {
+        self.nearest(point).0
+    }
+
+    /// Distance of a point, mm, positive outside and negative inside, and the nearest point of the surface.
+    pub(crate) fn nearest(&self, point: DVec3) -> (f64, DVec3) {
         let at = point.to_array();
-        let Some(nearest) = self.0.nearest_neighbor(&at) else { return f64::INFINITY };
+        let Some(nearest) = self.0.nearest_neighbor(&at) else { return (f64::INFINITY, point) };
         let spot = nearest.closest(point);
         let distance = point.distance(spot);
         let around = self.0.locate_within_distance(at, (distance + SAME_MM).powi(2));
         let touching = around.filter(|triangle| triangle.closest(point).distance(spot) < SAME_MM);
         let normal: DVec3 =
             touching.map(|triangle| triangle.normal().normalize_or_zero() * triangle.angle_at(spot)).sum();
-        if normal.dot(point - spot) < 0.0 { -distance } else { distance }
+        (if normal.dot(point - spot) < 0.0 { -distance } else { distance }, spot)
     }
 }

@@ -9,6 +9,7 @@
 //! | [`slice`](mod@slice) | level slices: islands with holes, or the lines of an open surface |
 //! | [`directions`] | a part divided into pieces with directions of their own |
 //! | [`cladding`] | metal over the surface of an existing part |
+//! | [`damage`] | what a scan of a part lacks, and the metal that replaces it |
 //! | [`middle_line`] | the curve in the middle of a bent tube, from its sections |
 //! | [`deviation`] | signed distances of measured points to a mesh |
 //! | [`example`] | parametric example parts |
@@ -19,6 +20,7 @@
 pub mod chart;
 pub mod cladding;
 pub mod curve;
+pub mod damage;
 pub mod deviation;
 pub mod directions;
 pub mod example;

@@ -22,7 +22,7 @@ mod guide;
 mod plane;
 mod polar;
 pub mod seam;
-mod surface;
+pub(crate) mod surface;
 mod text;
 pub mod warp;
 

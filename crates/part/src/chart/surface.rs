@@ -97,29 +97,13 @@ impl Surface {
         step: f64,
         kept: impl Fn(DVec2) -> bool,
     ) -> Result<Self, SurfaceError> {
-        let turn = turn(up).conjugate();
-        let seen: Vec<DVec3> = mesh.vertices.iter().map(|p| turn * *p).collect();
-        let corner = |least: DVec2, p: &DVec3| least.min(p.truncate());
-        let low = seen.iter().fold(DVec2::INFINITY, corner);
-        let high = -seen.iter().map(|p| -*p).fold(DVec2::INFINITY, |least, p| corner(least, &p));
-        if !(low.is_finite() && high.is_finite()) {
-            return Err(SurfaceError::Nothing);
-        }
-        // One step of margin, so that the whole part lies on the grid.
-        let from = ((low / step).floor() - 1.0) * step;
-        let counts = ((high - from) / step).ceil() + 2.0;
-        let [columns, rows] = [counts.x as usize, counts.y as usize].map(|count| count.max(LEAST));
-        if columns * rows > MOST {
-            return Err(SurfaceError::Grid { heights: columns * rows, columns });
-        }
-        let mut tops = vec![None; columns * rows];
-        for corners in &mesh.triangles {
-            raise(&mut tops, columns, from, step, corners.map(|corner| seen[corner as usize]));
-        }
-        let place = |k: usize| from + DVec2::new((k % columns) as f64, (k / columns) as f64) * step;
-        let tops = tops.into_iter().enumerate().map(|(k, top)| top.filter(|_| kept(place(k)))).collect();
-        let heights = spread(tops, columns).ok_or(SurfaceError::Nothing)?;
-        Self::new(up, from, step, columns, heights)
+        let seen = |p: &DVec3| turn(up).conjugate() * *p;
+        let corner = |least: DVec2, p: DVec3| least.min(p.truncate());
+        let low = mesh.vertices.iter().map(seen).fold(DVec2::INFINITY, corner);
+        let high = -mesh.vertices.iter().map(|p| -seen(p)).fold(DVec2::INFINITY, corner);
+        let grid = Grid::over(up, step, low, high)?;
+        let tops = grid.tops(mesh).into_iter().enumerate();
+        grid.surface(tops.map(|(k, top)| top.filter(|_| kept(grid.place(k)))).collect())
     }
 
     /// The same surface with heights rounded to four decimals of a mm, as in files.
@@ -184,6 +168,11 @@ impl Surface {
         At { place, along: [turn * along, turn * normal.cross(along)], normal: turn * normal }
     }
 
+    /// Height along `up` at a place, mm.
+    pub(crate) fn height(&self, p: DVec2) -> f64 {
+        self.at_place(p).0
+    }
+
     /// Height (mm) and slope of the surface at a point; beyond the grid it continues straight.
     fn at_place(&self, p: DVec2) -> (f64, DVec2) {
         let rows = self.heights.len() / self.columns;
@@ -243,26 +232,85 @@ impl Basis {
     }
 }
 
-/// Raises the heights of the grid points that a triangle covers to the triangle.
-fn raise(tops: &mut [Option<f64>], columns: usize, from: DVec2, step: f64, [a, b, c]: [DVec3; 3]) {
-    let [p, q, r] = [a, b, c].map(|corner| (corner.truncate() - from) / step);
-    let area = (q - p).perp_dot(r - p);
-    let longest = [(p, q), (q, r), (r, p)].map(|(p, q)| p.distance_squared(q)).into_iter().fold(0.0, f64::max);
-    if area.abs() <= UPRIGHT * longest {
-        return;
+/// A square grid of places seen along a direction, on which heights are measured.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Grid {
+    up: DVec3,
+    /// Its first place, mm.
+    pub(crate) from: DVec2,
+    /// Distance of its places, mm.
+    pub(crate) step: f64,
+    pub(crate) columns: usize,
+    pub(crate) rows: usize,
+}
+
+impl Grid {
+    /// The grid over a box, mm, with one step of margin, so that all of a part lies on it.
+    ///
+    /// # Errors
+    /// [`SurfaceError`].
+    pub(crate) fn over(up: DVec3, step: f64, low: DVec2, high: DVec2) -> Result<Self, SurfaceError> {
+        if !(low.is_finite() && high.is_finite()) {
+            return Err(SurfaceError::Nothing);
+        }
+        let from = ((low / step).floor() - 1.0) * step;
+        let counts = ((high - from) / step).ceil() + 2.0;
+        let [columns, rows] = [counts.x as usize, counts.y as usize].map(|count| count.max(LEAST));
+        if columns * rows > MOST {
+            return Err(SurfaceError::Grid { heights: columns * rows, columns });
+        }
+        Ok(Self { up, from, step, columns, rows })
     }
-    let (low, high) = (p.min(q).min(r) - EDGE, p.max(q).max(r) + EDGE);
-    let (low, high) = (low.ceil().max(DVec2::ZERO), high.floor());
-    for row in low.y as usize..=high.y.max(0.0) as usize {
-        for column in low.x as usize..=high.x.max(0.0) as usize {
-            let at = DVec2::new(column as f64, row as f64);
-            let parts = [(q - at).perp_dot(r - at), (r - at).perp_dot(p - at), (p - at).perp_dot(q - at)]
-                .map(|part| part / area);
-            if parts.iter().any(|part| *part < -EDGE) {
-                continue;
-            }
-            let height = parts[0] * a.z + parts[1] * b.z + parts[2] * c.z;
-            if let Some(top) = tops.get_mut(row * columns + column).filter(|_| column < columns) {
+
+    /// A point with its place on the grid as x and y and its height as z, mm.
+    pub(crate) fn seen(&self, p: DVec3) -> DVec3 {
+        turn(self.up).conjugate() * p
+    }
+
+    pub(crate) fn place(&self, k: usize) -> DVec2 {
+        self.from + DVec2::new((k % self.columns) as f64, (k / self.columns) as f64) * self.step
+    }
+
+    /// The topmost heights of a mesh, row by row, mm; none where nothing of it is seen.
+    pub(crate) fn tops(&self, mesh: &Mesh) -> Vec<Option<f64>> {
+        let seen: Vec<DVec3> = mesh.vertices.iter().map(|p| self.seen(*p)).collect();
+        let mut tops = vec![None; self.columns * self.rows];
+        for corners in &mesh.triangles {
+            self.raise(&mut tops, corners.map(|corner| seen[corner as usize]));
+        }
+        tops
+    }
+
+    /// The surface through heights; where there are none, it goes on straight for a few steps, then level.
+    ///
+    /// # Errors
+    /// [`SurfaceError`].
+    pub(crate) fn surface(&self, tops: Vec<Option<f64>>) -> Result<Surface, SurfaceError> {
+        let heights = spread(tops, self.columns).ok_or(SurfaceError::Nothing)?;
+        Surface::new(self.up, self.from, self.step, self.columns, heights)
+    }
+
+    /// Raises the heights that a triangle covers.
+    fn raise(&self, tops: &mut [Option<f64>], [a, b, c]: [DVec3; 3]) {
+        let [p, q, r] = [a, b, c].map(|corner| (corner.truncate() - self.from) / self.step);
+        let area = (q - p).perp_dot(r - p);
+        let longest = [(p, q), (q, r), (r, p)].map(|(p, q)| p.distance_squared(q)).into_iter().fold(0.0, f64::max);
+        if area.abs() <= UPRIGHT * longest {
+            return;
+        }
+        let (low, high) = (p.min(q).min(r) - EDGE, p.max(q).max(r) + EDGE);
+        let (low, high) = (low.ceil().max(DVec2::ZERO), high.floor());
+        let within = |low: f64, high: f64, count: usize| low as usize..((high + 1.0).max(0.0) as usize).min(count);
+        for row in within(low.y, high.y, self.rows) {
+            for column in within(low.x, high.x, self.columns) {
+                let at = DVec2::new(column as f64, row as f64);
+                let parts = [(q - at).perp_dot(r - at), (r - at).perp_dot(p - at), (p - at).perp_dot(q - at)]
+                    .map(|part| part / area);
+                if parts.iter().any(|part| *part < -EDGE) {
+                    continue;
+                }
+                let height = parts[0] * a.z + parts[1] * b.z + parts[2] * c.z;
+                let top = &mut tops[row * self.columns + column];
                 *top = Some(top.map_or(height, |top: f64| top.max(height)));
             }
         }

@@ -61,7 +61,20 @@ pub fn bent(surface: &Surface, flat: &Mesh, tolerance: f64, task: &Task) -> Resu
 /// # Errors
 /// [`WarpError::Cancelled`].
 pub(crate) fn divided(mesh: &Mesh, longest: f64, task: &Task) -> Result<Mesh, WarpError> {
-    let cut = |a: DVec3, b: DVec3| Ok((a.distance(b) > longest).then(|| a.midpoint(b)));
+    divided_where(mesh, longest, task, |_, _| true)
+}
+
+/// The same mesh with those edges that are wanted, by their ends, no longer than this, mm.
+///
+/// # Errors
+/// [`WarpError::Cancelled`].
+pub(crate) fn divided_where(
+    mesh: &Mesh,
+    longest: f64,
+    task: &Task,
+    wanted: impl Fn(DVec3, DVec3) -> bool,
+) -> Result<Mesh, WarpError> {
+    let cut = |a: DVec3, b: DVec3| Ok((a.distance(b) > longest && wanted(a, b)).then(|| a.midpoint(b)));
     let Divided { vertices, triangles } = Divided::of(mesh, cut, task)?;
     Ok(Mesh { vertices, triangles, ..Mesh::default() })
 }
