@@ -1,5 +1,6 @@
 //! `beadwright clad`: cladding over a surface or a pipe, as a model with its bodies, for `plan --onto`.
 
+use crate::onto::Onto;
 use crate::{file, model, profile, progress, say};
 use anyhow::Context;
 use beadwright::chart::Chart;
@@ -10,7 +11,7 @@ use beadwright::profile::{Body, Profile};
 use beadwright::task::Task;
 use glam::DVec3;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -131,28 +132,14 @@ fn write(arguments: &Arguments, Cladding { mesh, chart, bare }: &Cladding) -> an
         writeln!(out, "warning: {:.1} cm² {what}.", bare / 100.0)?;
     }
     writeln!(out, "{}: {layers} layer{s} of cladding. Plan it with", path.display())?;
-    writeln!(out, "  {}", command(arguments, path, &beside, chart))?;
-    Ok(())
-}
-
-/// The command that plans the cladding.
-fn command(arguments: &Arguments, path: &Path, beside: &Path, chart: &Chart) -> String {
-    let mut words = vec!["beadwright".to_owned(), "plan".to_owned(), path.display().to_string()];
-    let mut flag = |name: &str, value: String| words.extend([name.to_owned(), value]);
-    flag("--onto", arguments.model.model.display().to_string());
-    flag("--bodies", beside.display().to_string());
-    if arguments.model.placing.accept_damaged {
-        words.push("--accept-damaged".to_owned());
-    }
-    let mut flag = |name: &str, value: String| words.extend([name.to_owned(), value]);
-    arguments.wanted.profile.iter().for_each(|profile| flag("--profile", profile.clone()));
-    arguments.wanted.set.iter().for_each(|set| flag("--set", set.clone()));
-    if chart.goes_around() {
-        flag("--set", "fill.around=\"helix\"".to_owned());
-    }
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
-    let quoted = |word: &String| {
-        if word.chars().all(plain) { word.clone() } else { format!("'{}'", word.replace('\'', "'\\''")) }
+    let onto = Onto {
+        model: path,
+        base: &arguments.model.model,
+        bodies: &beside,
+        accept_damaged: arguments.model.placing.accept_damaged,
+        wanted: &arguments.wanted,
+        set: if chart.goes_around() { &["fill.around=\"helix\""] } else { &[] },
     };
-    words.iter().map(quoted).collect::<Vec<_>>().join(" ")
+    writeln!(out, "  {}", onto.command())?;
+    Ok(())
 }

@@ -21,6 +21,7 @@ mod heat;
 mod inspect;
 mod memory;
 mod model;
+mod onto;
 mod parts;
 mod plan;
 mod preform;
@@ -29,6 +30,7 @@ mod program;
 mod progress;
 mod reach;
 mod remedy;
+mod repair;
 mod reproduce;
 mod say;
 mod serve;
@@ -73,6 +75,9 @@ enum Command {
     Surface(surface::Arguments),
     /// Make a model of the cladding of a base, over its surface or around a pipe, with its bodies for `plan --onto`.
     Clad(clad::Arguments),
+    /// Find what a scan of a damaged part lacks: the metal to be welded as a model with its bodies, and the damaged part with its
+    /// grooves milled, for `plan --onto`.
+    Repair(repair::Arguments),
     /// Plan a model with every strategy, and judge them side by side.
     Compare(compare::Arguments),
     /// Plan many models with many profiles, strategies and values, and put the results into one table.
@@ -124,6 +129,7 @@ fn main() -> ExitCode {
         Command::Guide(arguments) => guide::run(&arguments),
         Command::Surface(arguments) => surface::run(&arguments),
         Command::Clad(arguments) => clad::run(&arguments),
+        Command::Repair(arguments) => repair::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),

@@ -42,7 +42,7 @@ pub mod simulate;
 
 pub use bead_part::{chart, example, model, slice};
 #[doc(hidden)]
-pub use bead_part::{cladding, curve, deviation, directions, finding, middle_line, task, text, warning};
+pub use bead_part::{cladding, curve, damage, deviation, directions, finding, middle_line, task, text, warning};
 use bead_plan::random;
 pub use bead_plan::{bead, deposit, fill, heat, preform};
 #[doc(hidden)]

@@ -1,0 +1,236 @@
+//! `beadwright repair`: what a scan of a damaged part lacks, as metal to be welded with its bodies, for `plan --onto`.
+
+use crate::onto::Onto;
+use crate::{file, model, profile, progress, say};
+use anyhow::Context;
+use beadwright::adapt::scan;
+use beadwright::chart::{Chart, SurfaceError};
+use beadwright::damage::{self, Damage, DamageError, Left, Repair, Settings};
+use beadwright::model::{Mesh, Solids, Units, stl};
+use beadwright::profile::{Body, Profile, Solid};
+use beadwright::task::Task;
+use glam::DVec3;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    model: model::Model,
+    /// Scan of the damaged part, in the coordinates of the part as it is planned, with z = 0 on the plate: a surface (PLY, STL, OBJ,
+    /// 3MF, AMF). It need not be closed.
+    #[arg(value_name = "SCAN")]
+    scan: PathBuf,
+    /// Unit of the scan's coordinates, if its file does not give it.
+    #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", default_value = "mm")]
+    scan_units: Units,
+    /// Direction from which all damage is welded, along which layers are stacked; that in which each damage is open if left out.
+    #[arg(long, value_name = "X/Y/Z", allow_hyphen_values = true)]
+    up: Option<String>,
+    /// How far the scan may lie inside the part before metal counts as missing, mm.
+    #[arg(long, value_name = "MM", default_value_t = 0.5, value_parser = parse_tolerance)]
+    tolerance: f64,
+    /// Metal welded above the part's surface, at most, mm, to be milled off: one layer if left out, which is the least.
+    #[arg(long, value_name = "MM", value_parser = parse_allowance)]
+    allowance: Option<f64>,
+    /// Spacing of the grid on which heights are sampled, mm; finer detail is smoothed out.
+    #[arg(long, value_name = "MM", default_value_t = 2.0, value_parser = crate::surface::parse_step)]
+    step: f64,
+    /// Model of the metal to write (STL); its bodies come beside it, as NAME.bodies.toml, and the damaged part with its grooves milled,
+    /// as NAME.base.stl.
+    #[arg(long, short, value_name = "FILE", default_value = "repair.stl")]
+    output: PathBuf,
+    #[command(flatten)]
+    wanted: profile::Wanted,
+}
+
+fn parse_tolerance(text: &str) -> Result<f64, String> {
+    length(text, 0.05..=20.0)
+}
+
+fn parse_allowance(text: &str) -> Result<f64, String> {
+    length(text, 0.1..=50.0)
+}
+
+fn length(text: &str, range: std::ops::RangeInclusive<f64>) -> Result<f64, String> {
+    let length: f64 = text.parse().map_err(|_| "a length in mm is expected".to_owned())?;
+    let wrong = || format!("the length must lie between {} and {} mm", range.start(), range.end());
+    if range.contains(&length) { Ok(length) } else { Err(wrong()) }
+}
+
+/// A scan that ends this far above the plate does not show where the part stands, mm.
+const OFF_PLATE: f64 = 0.05;
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
+    let profile = profile::load(name, &arguments.wanted.set)?;
+    let settings = arguments.settings(&profile)?;
+    let files = Files::of(&arguments.output)?;
+    files.differ_from(&[&arguments.model.model, &arguments.scan])?;
+    let (task, bar) = progress::task()?;
+    let part = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?.mesh;
+    let (scan, lowest) = arguments.scan(&task)?;
+    let found = damage::repair(&standing(&part, lowest), &scan, settings, &task);
+    bar.finish_and_clear();
+    let repair = found.map_err(advised).with_context(|| arguments.scan.display().to_string())?;
+    let mut out = say::done(false);
+    if lowest > OFF_PLATE {
+        writeln!(
+            out,
+            "warning: the scan ends {lowest:.1} mm above the plate. `plan` takes its lowest point for z = 0, so the program lies {lowest:.1} mm \
+             lower than the part: set the robot's base that much higher, or scan down to the plate."
+        )?;
+    }
+    for Left { place, depth, reason } in &repair.left {
+        writeln!(out, "warning: the damage {}, {depth:.1} mm deep, is not welded: {reason}.", at(*place, lowest))?;
+    }
+    if repair.damages.is_empty() {
+        let tolerance = settings.tolerance;
+        let nothing = if repair.left.is_empty() { "no metal is missing" } else { "nothing can be welded" };
+        writeln!(
+            out,
+            "{nothing}; metal counts as missing where the scan lies more than {tolerance} mm inside the part."
+        )?;
+        return Ok(());
+    }
+    files.write(&repair)?;
+    for (number, damage) in repair.damages.iter().enumerate() {
+        writeln!(out, "{}. {}", number + 1, sentence(damage, lowest))?;
+    }
+    writeln!(
+        out,
+        "{}: the metal to be welded, up to {} mm above the part. {}: the damaged part, its grooves milled. Plan it with",
+        files.metal.display(),
+        settings.allowance,
+        files.base.display()
+    )?;
+    let Files { metal, base, bodies } = &files;
+    let wanted = &arguments.wanted;
+    let onto = Onto { model: metal, base, bodies, accept_damaged: false, wanted, set: &[] };
+    writeln!(out, "  {}", onto.command())?;
+    Ok(())
+}
+
+impl Arguments {
+    fn settings(&self, profile: &Profile) -> anyhow::Result<Settings> {
+        let layer = profile.layers.height;
+        let allowance = self.allowance.unwrap_or(layer);
+        anyhow::ensure!(
+            allowance >= layer,
+            "--allowance {allowance}: at least the height of a layer, {layer} mm, is needed; layers end where the part does only by chance"
+        );
+        let up = self.up.as_ref().map(|up| {
+            let plane: Chart = format!("plane:up={up}").parse().context("--up")?;
+            anyhow::Ok(plane.sheet(0.0).at(DVec3::ZERO).normal)
+        });
+        let (step, tolerance, bead) = (self.step, self.tolerance, profile.bead.width);
+        Ok(Settings { up: up.transpose()?, step, tolerance, allowance, layer, bead })
+    }
+
+    /// The scan, standing on z = 0, and how high its lowest point lay above the plate.
+    fn scan(&self, task: &Task) -> anyhow::Result<(Mesh, f64)> {
+        let context = || self.scan.display().to_string();
+        let scan = scan::read(&file::read(&self.scan)?, task).with_context(context)?;
+        let unit = self.scan_units.in_mm();
+        let (mut mesh, _) = Mesh::from_triangles(scan.points.iter().map(|p| *p * unit).collect(), scan.triangles);
+        let lowest = mesh.bounds().0.z.max(0.0);
+        // Below the plate there is only noise.
+        mesh.vertices.iter_mut().for_each(|p| p.z = (p.z - lowest).max(0.0));
+        Ok((mesh, lowest))
+    }
+}
+
+/// The part, lowered with its scan.
+fn standing(part: &Mesh, lowest: f64) -> Mesh {
+    let mut part = part.clone();
+    part.vertices.iter_mut().for_each(|p| p.z -= lowest);
+    part
+}
+
+/// An error with the flags that help.
+fn advised(error: DamageError) -> anyhow::Error {
+    match error {
+        DamageError::Surface(SurfaceError::Grid { heights, .. }) => anyhow::anyhow!(
+            "a damaged place is so large that its surface would have {heights} heights: give a coarser --step"
+        ),
+        DamageError::Apart(_) => {
+            anyhow::anyhow!("{error}; --turn, --centre and --shift place the part, --scan-units gives the scan's unit")
+        }
+        _ => error.into(),
+    }
+}
+
+fn at(place: DVec3, lowest: f64) -> String {
+    format!("near x {:.1} y {:.1} z {:.1} mm", place.x, place.y, place.z + lowest)
+}
+
+fn sentence(damage: &Damage, lowest: f64) -> String {
+    let Damage { chart, place, depth, missing, milled, .. } = damage;
+    let up = chart.sheet(0.0).at(DVec3::ZERO);
+    let up = match chart {
+        Chart::Surface(surface) => surface.up(),
+        _ => up.normal,
+    };
+    let [x, y, z] = up.to_array().map(|part| (part * 100.0).round() / 100.0 + 0.0);
+    let milling =
+        if *milled > 0.05e3 { format!("; mill a groove of {:.1} cm³ first", milled / 1e3) } else { String::new() };
+    format!(
+        "{}: {depth:.1} mm deep, {:.1} cm³ missing, welded along {x}/{y}/{z}{milling}.",
+        at(*place, lowest),
+        missing / 1e3
+    )
+}
+
+/// The files that are written.
+struct Files {
+    metal: PathBuf,
+    base: PathBuf,
+    bodies: PathBuf,
+}
+
+impl Files {
+    fn of(output: &Path) -> anyhow::Result<Self> {
+        anyhow::ensure!(
+            !file::is_standard(output),
+            "--output -: the metal, its bodies and the damaged part are three files; give the metal a name, such as repair.stl"
+        );
+        let beside = |extension: &str| output.with_extension(extension);
+        Ok(Self { metal: output.to_owned(), base: beside("base.stl"), bodies: beside("bodies.toml") })
+    }
+
+    fn differ_from(&self, given: &[&Path]) -> anyhow::Result<()> {
+        for path in [&self.metal, &self.base] {
+            let same =
+                |given: &&&Path| path.canonicalize().is_ok_and(|path| given.canonicalize().is_ok_and(|g| g == path));
+            if let Some(given) = given.iter().find(same) {
+                anyhow::bail!("{}: that would be overwritten; give --output another name", given.display());
+            }
+        }
+        Ok(())
+    }
+
+    fn write(&self, repair: &Repair) -> anyhow::Result<()> {
+        let name = self.metal.file_stem().map_or("repair".into(), |stem| stem.to_string_lossy().into_owned());
+        let bodies: Vec<Body> = repair.damages.iter().enumerate().map(|(k, damage)| body(k, damage)).collect();
+        let metal = repair.damages.iter().flat_map(|damage| triangles(&damage.mesh));
+        file::write(&self.metal, &stl::write(&name, metal))?;
+        file::write(&self.base, &stl::write(&format!("{name} base"), triangles(&repair.base)))?;
+        file::write(&self.bodies, Body::write(&bodies).as_bytes())
+    }
+}
+
+fn triangles(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
+    mesh.triangles.iter().map(|corners| corners.map(|corner| mesh.vertices[corner as usize]))
+}
+
+/// The body of one damage; they lie so far apart that a point on each of its solids names it.
+fn body(number: usize, damage: &Damage) -> Body {
+    let solids = Solids::of(&damage.mesh);
+    let points = (0..solids.count()).filter_map(|solid| solids.point(solid));
+    let thousandths = |p: DVec3| (p * 1e3).round() / 1e3;
+    Body {
+        solids: points.map(thousandths).map(Solid::At).collect(),
+        on_stock: true,
+        ..Body::of(&format!("damage {}", number + 1), damage.chart.clone())
+    }
+}
