@@ -33,6 +33,9 @@ pub(crate) struct Arguments {
     /// Metal welded above the part's surface, at most, mm, to be milled off: one layer if left out, which is the least.
     #[arg(long, value_name = "MM", value_parser = parse_allowance)]
     allowance: Option<f64>,
+    /// Angle between the sides of a groove and its floor, degrees, where damage is so steep that it is milled to a groove first.
+    #[arg(long, value_name = "DEG", default_value_t = 45.0, value_parser = parse_sides)]
+    sides: f64,
     /// Spacing of the grid on which heights are sampled, mm; finer detail is smoothed out.
     #[arg(long, value_name = "MM", default_value_t = 2.0, value_parser = crate::surface::parse_step)]
     step: f64,
@@ -42,6 +45,15 @@ pub(crate) struct Arguments {
     output: PathBuf,
     #[command(flatten)]
     wanted: profile::Wanted,
+}
+
+fn parse_sides(text: &str) -> Result<f64, String> {
+    let sides: f64 = text.parse().map_err(|_| "an angle in degrees is expected".to_owned())?;
+    if (20.0..=80.0).contains(&sides) {
+        Ok(sides)
+    } else {
+        Err("the angle must lie between 20 and 80 degrees".to_owned())
+    }
 }
 
 fn parse_tolerance(text: &str) -> Result<f64, String> {
@@ -123,8 +135,8 @@ impl Arguments {
             let plane: Chart = format!("plane:up={up}").parse().context("--up")?;
             anyhow::Ok(plane.sheet(0.0).at(DVec3::ZERO).normal)
         });
-        let (step, tolerance, bead) = (self.step, self.tolerance, profile.bead.width);
-        Ok(Settings { up: up.transpose()?, step, tolerance, allowance, layer, bead })
+        let (step, tolerance, sides, bead) = (self.step, self.tolerance, self.sides, profile.bead.width);
+        Ok(Settings { up: up.transpose()?, step, tolerance, allowance, layer, bead, sides })
     }
 
     /// The scan, standing on z = 0, and how high its lowest point lay above the plate.
@@ -165,17 +177,13 @@ fn at(place: DVec3, lowest: f64) -> String {
 }
 
 fn sentence(damage: &Damage, lowest: f64) -> String {
-    let Damage { chart, place, depth, missing, milled, .. } = damage;
-    let up = chart.sheet(0.0).at(DVec3::ZERO);
-    let up = match chart {
-        Chart::Surface(surface) => surface.up(),
-        _ => up.normal,
-    };
+    let Damage { chart, up, place, depth, missing, milled, .. } = damage;
     let [x, y, z] = up.to_array().map(|part| (part * 100.0).round() / 100.0 + 0.0);
+    let layers = if matches!(chart, Chart::Surface(_)) { "layers that follow it" } else { "level layers" };
     let milling =
         if *milled > 0.05e3 { format!("; mill a groove of {:.1} cm³ first", milled / 1e3) } else { String::new() };
     format!(
-        "{}: {depth:.1} mm deep, {:.1} cm³ missing, welded along {x}/{y}/{z}{milling}.",
+        "{}: {depth:.1} mm deep, {:.1} cm³ missing, welded in {layers} along {x}/{y}/{z}{milling}.",
         at(*place, lowest),
         missing / 1e3
     )

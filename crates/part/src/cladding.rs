@@ -106,7 +106,7 @@ pub fn over(
 ) -> Result<Cladding, CladdingError> {
     let near = area.map(|area| area.offset(BESIDE * step, Join::ROUND));
     let kept = |p: DVec2| near.as_ref().is_none_or(|near| near.contains(p));
-    let facing = faces(base, |corners| normal(corners).dot(up) >= FACING);
+    let facing = base.only(|corners| normal(corners).dot(up) >= FACING);
     let facing = warp::divided(&facing, PIECE * step, task)?;
     let level = level(&facing, up, step, kept)?;
     // So that what falls away beside those faces does not pull their edges down.
@@ -135,7 +135,7 @@ fn level(facing: &Mesh, up: DVec3, step: f64, kept: impl Fn(DVec2) -> bool + Cop
         other => other.into(),
     })?;
     let chart = Chart::Surface(Arc::new(whole));
-    let level = faces(facing, |corners| {
+    let level = facing.only(|corners| {
         let middle = chart.coordinates(corners.iter().sum::<DVec3>() / 3.0);
         let is_seen = middle.z >= -SEEN * step && kept(middle.truncate());
         is_seen && (chart.stretch(middle.truncate()) <= STEEPEST || normal(corners).dot(up) >= 1.0 / STEEPEST)
@@ -168,13 +168,6 @@ fn places(region: &Region, step: f64) -> impl Iterator<Item = DVec3> {
 
 fn normal([a, b, c]: &[DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
-}
-
-/// A mesh with only the faces that `kept` accepts.
-fn faces(mesh: &Mesh, kept: impl Fn(&[DVec3; 3]) -> bool) -> Mesh {
-    let corners = |triangle: &[u32; 3]| triangle.map(|corner| mesh.vertices[corner as usize]);
-    let triangles = mesh.triangles.iter().copied().filter(|triangle| kept(&corners(triangle))).collect();
-    Mesh { vertices: mesh.vertices.clone(), triangles, ..Mesh::default() }
 }
 
 /// The projection of upward-looking faces onto (u, v) of a surface.

@@ -115,6 +115,49 @@ fn cladding_is_planned_by_the_command_that_comes_with_it() {
     assert!(fails(folder.path(), &["clad", "dome.stl", "-o", "dome.stl"]).contains("that is the base"));
 }
 
+/// A block that has lost 3 mm of its top is welded as high as it was, and no higher than the allowance.
+#[test]
+fn a_repair_is_planned_by_the_command_that_comes_with_it() {
+    let folder = TempDir::new().unwrap();
+    let write = |name: &str, high: [f64; 3]| block(&folder.path().join(name), [0.0; 3], high);
+    write("part.stl", [80.0, 60.0, 20.0]);
+    write("scan.stl", [80.0, 60.0, 17.0]);
+    let said = done(folder.path(), &["repair", "part.stl", "scan.stl", "-o", "top.stl"]);
+    assert!(said.starts_with("1. near") && said.contains("3.0 mm deep, 14.4 cm³ missing"), "{said}");
+    let command = said.lines().last().unwrap().trim();
+    let words: Vec<&str> = command.split(' ').skip(1).chain(["--json", "-o", "out"]).collect();
+    let json: serde_json::Value = serde_json::from_str(&done(folder.path(), &words)).unwrap();
+    // Two layers of 2 mm: 3 mm and at most 2 of allowance.
+    assert_eq!((json["layers"].as_u64(), json["arc_starts"].as_u64()), (Some(2), Some(2)), "{command}");
+    let deviation = ["deviation", "top.stl", "out/plan.json", "--onto", "top.base.stl", "--json"];
+    let json: serde_json::Value = serde_json::from_str(&done(folder.path(), &deviation)).unwrap();
+    assert!(
+        json["built"]["agreement"].as_f64().unwrap() > 0.95 && json["figures"]["mean"].as_f64().unwrap().abs() < 0.3
+    );
+
+    // Nothing is missing, and nothing is written; a scan of the top alone lies above the plate.
+    let said = done(folder.path(), &["repair", "part.stl", "part.stl", "-o", "none.stl"]);
+    assert!(said.starts_with("no metal is missing") && !folder.path().join("none.stl").exists(), "{said}");
+    let above = "v 0 0 17\nv 80 0 17\nv 80 60 17\nv 0 60 17\nf 1 2 3\nf 1 3 4\n";
+    fs::write(folder.path().join("above.obj"), above).unwrap();
+    let said = done(folder.path(), &["repair", "part.stl", "above.obj"]);
+    assert!(
+        said.starts_with("warning: the scan ends 17.0 mm above the plate.") && said.contains("z 17.0 mm"),
+        "{said}"
+    );
+
+    // What is given is kept.
+    fs::write(folder.path().join("cloud.xyz"), "0 0 17\n10 0 17\n0 10 17\n").unwrap();
+    assert!(fails(folder.path(), &["repair", "part.stl", "cloud.xyz"]).contains("cloud of points"));
+    assert!(
+        fails(folder.path(), &["repair", "part.stl", "scan.stl", "-o", "scan.stl"]).contains("would be overwritten")
+    );
+    let low = fails(folder.path(), &["repair", "part.stl", "scan.stl", "--allowance", "0.5"]);
+    assert!(low.contains("height of a layer"), "{low}");
+    let apart = fails(folder.path(), &["repair", "part.stl", "scan.stl", "--scan-units", "m"]);
+    assert!(apart.contains("--scan-units"), "{apart}");
+}
+
 #[test]
 fn faults_of_a_file_of_bodies_are_named() {
     let folder = TempDir::new().unwrap();

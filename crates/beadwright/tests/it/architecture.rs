@@ -18,7 +18,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["chart"],
             &["cladding", "deviation", "example", "slice"],
             &["middle_line"],
-            &["directions"],
+            &["damage", "directions"],
         ],
     ),
     (

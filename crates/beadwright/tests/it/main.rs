@@ -26,6 +26,7 @@ mod cost;
 mod crashes;
 mod curve;
 mod cut;
+mod damage;
 mod definition;
 mod deposit;
 mod deposit_quick;

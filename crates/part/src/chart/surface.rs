@@ -97,7 +97,7 @@ impl Surface {
         step: f64,
         kept: impl Fn(DVec2) -> bool,
     ) -> Result<Self, SurfaceError> {
-        let seen = |p: &DVec3| turn(up).conjugate() * *p;
+        let seen = |p: &DVec3| seen(up, *p);
         let corner = |least: DVec2, p: DVec3| least.min(p.truncate());
         let low = mesh.vertices.iter().map(seen).fold(DVec2::INFINITY, corner);
         let high = -mesh.vertices.iter().map(|p| -seen(p)).fold(DVec2::INFINITY, corner);
@@ -155,7 +155,7 @@ impl Surface {
     }
 
     pub(super) fn coordinates(&self, p: DVec3) -> DVec3 {
-        let seen = turn(self.up).conjugate() * p;
+        let seen = seen(self.up, p);
         seen.with_z(seen.z - self.at_place(seen.truncate()).0)
     }
 
@@ -213,6 +213,11 @@ impl Surface {
     }
 }
 
+/// A point as it is seen along `up`: its place as x and y, its height as z, mm.
+pub(crate) fn seen(up: DVec3, p: DVec3) -> DVec3 {
+    turn(up).conjugate() * p
+}
+
 fn turn(up: DVec3) -> DQuat {
     DQuat::from_rotation_arc(DVec3::Z, up)
 }
@@ -264,7 +269,7 @@ impl Grid {
 
     /// A point with its place on the grid as x and y and its height as z, mm.
     pub(crate) fn seen(&self, p: DVec3) -> DVec3 {
-        turn(self.up).conjugate() * p
+        seen(self.up, p)
     }
 
     pub(crate) fn place(&self, k: usize) -> DVec2 {

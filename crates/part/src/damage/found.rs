@@ -1,7 +1,7 @@
 //! Where a scan lies inside the part.
 
-use super::{DamageError, Settings, groove};
-use crate::chart::warp::{self, WarpError};
+use super::{DamageError, Settings};
+use crate::chart::warp;
 use crate::deviation::Surface;
 use crate::model::Mesh;
 use crate::task::{Cancelled, Task};
@@ -35,7 +35,7 @@ const ALONG: f64 = 0.9962;
 /// Scan and part lie apart if half of the scan lies farther off than this part of the part's size.
 const APART: f64 = 0.1;
 
-/// All places where metal is missing, as far apart as the grooves that they need.
+/// All places where metal is missing.
 ///
 /// # Errors
 /// [`DamageError::Apart`], [`DamageError::Cancelled`].
@@ -46,22 +46,17 @@ pub(super) fn all(
     settings: Settings,
     task: &Task,
 ) -> Result<Vec<Found>, DamageError> {
-    let fine = warp::divided(scan, PIECE * settings.step, task).map_err(|error| match error {
-        WarpError::Cancelled(cancelled) => cancelled,
-        // Only a chart is steep or torn.
-        _ => Cancelled,
-    })?;
-    let mut nearest = Vec::with_capacity(fine.vertices.len());
-    for batch in fine.vertices.chunks(BATCH) {
-        task.check()?;
-        nearest.par_extend(batch.par_iter().map(|point| surface.nearest(*point)));
-    }
-    let mut far: Vec<f64> = nearest.iter().map(|(distance, _)| distance.abs()).collect();
+    let mut far: Vec<f64> =
+        nearest(surface, &scan.vertices, task)?.iter().map(|(distance, _)| distance.abs()).collect();
     let middle = far.len() / 2;
     let half = *far.select_nth_unstable_by(middle, f64::total_cmp).1;
     if half > APART * part.size().length() {
         return Err(DamageError::Apart(half));
     }
+    let (low, high) = part.bounds();
+    let is_within = |a: DVec3, b: DVec3| a.min(b).cmple(high).all() && a.max(b).cmpge(low).all();
+    let fine = warp::divided_where(scan, PIECE * settings.step, task, is_within).map_err(super::cancelled)?;
+    let nearest = nearest(surface, &fine.vertices, task)?;
     let deep = |corner: &u32| nearest[*corner as usize].0 < -settings.tolerance;
     let faces: Vec<[u32; 3]> = fine.triangles.iter().copied().filter(|face| face.iter().all(deep)).collect();
     let mut places: BTreeMap<u32, Found> = BTreeMap::new();
@@ -74,7 +69,17 @@ pub(super) fn all(
     }
     // Roughness of the scan is no damage.
     let places = places.into_values().filter(|found| found.area > settings.bead * settings.bead / 4.0);
-    Ok(apart(places.collect(), settings))
+    Ok(places.map(Found::opened).collect())
+}
+
+/// For each point the distance from a surface, negative inside, mm, and the nearest point of it.
+fn nearest(surface: &Surface, points: &[DVec3], task: &Task) -> Result<Vec<(f64, DVec3)>, Cancelled> {
+    let mut nearest = Vec::with_capacity(points.len());
+    for batch in points.chunks(BATCH) {
+        task.check()?;
+        nearest.par_extend(batch.par_iter().map(|point| surface.nearest(*point)));
+    }
+    Ok(nearest)
 }
 
 /// The number of the place to which each face belongs: faces that share a corner belong to one.
@@ -96,27 +101,6 @@ fn joined(faces: &[[u32; 3]], corners: usize) -> Vec<u32> {
         }
     }
     faces.iter().map(|face| root(&mut parents, face[0])).collect()
-}
-
-/// Places whose grooves would meet become one.
-fn apart(mut places: Vec<Found>, settings: Settings) -> Vec<Found> {
-    let reach = |found: &Found| groove::reach(found.depth, settings.bead);
-    let meet = |a: &Found, b: &Found| {
-        let ((a_low, a_high), (b_low, b_high)) = (a.bounds(), b.bounds());
-        let room = DVec3::splat(reach(a) + reach(b));
-        (a_low - b_high).cmple(room).all() && (b_low - a_high).cmple(room).all()
-    };
-    let mut k = 0;
-    while k < places.len() {
-        match (k + 1..places.len()).find(|other| meet(&places[k], &places[*other])) {
-            Some(other) => {
-                let other = places.swap_remove(other);
-                places[k].take(other);
-            }
-            None => k += 1,
-        }
-    }
-    places.into_iter().map(Found::opened).collect()
 }
 
 impl Found {
@@ -141,15 +125,17 @@ impl Found {
         }
     }
 
+    /// Two places as one.
+    pub(super) fn and(mut self, other: Self) -> Self {
+        self.take(other);
+        self.opened()
+    }
+
     /// With its direction: out of its rim; the faces of a scan may point inwards.
     fn opened(self) -> Self {
         let out = if self.faces.dot(self.ways) < 0.0 { -self.faces } else { self.faces };
         let out = out.try_normalize().unwrap_or(DVec3::Z);
         let axes = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
         Self { open: axes.into_iter().find(|axis| axis.dot(out) >= ALONG).unwrap_or(out), ..self }
-    }
-
-    fn bounds(&self) -> (DVec3, DVec3) {
-        self.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)))
     }
 }

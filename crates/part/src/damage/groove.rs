@@ -1,13 +1,13 @@
-//! The groove of one damaged place: as deep as the damage, no steeper than layers can follow, and what is welded in it.
+//! The groove of one damaged place, and what is welded in it.
 //!
-//! Its floor is the highest surface under the scan that rises from the damage by no more than [`GENTLE`] in any direction. It ends where
-//! the part does, and at steps of the part, so that no wall beside the damage is milled.
+//! Its floor is the highest surface under the scan whose sides are no steeper than allowed. It ends where the part does, and at steps of
+//! the part, so that no wall beside the damage is milled. Layers follow a floor that is flat enough; otherwise they are level.
 
 use super::found::Found;
 use super::{Reason, Settings, Unfilled};
-use crate::chart::surface::Grid;
+use crate::chart::surface::{self, Grid};
 use crate::chart::warp::{self, WarpError};
-use crate::chart::{Chart, Surface};
+use crate::chart::{Chart, Plane, Surface};
 use crate::model::Mesh;
 use crate::model::solid::Solid;
 use crate::task::Task;
@@ -15,11 +15,10 @@ use glam::{DVec2, DVec3};
 use planar::isolines::isolines;
 use planar::{Bounds, FillRule, Join, Lattice, Polygon, Region, Ring};
 use std::collections::VecDeque;
-use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
-/// Rise of a groove's sides: less than layers can follow, since splines through its corners are a little steeper.
-const GENTLE: f64 = 0.25;
+/// Steepest slope of a floor that layers follow: less than they could, since splines through its corners are a little steeper.
+const GENTLE: f64 = 0.22;
 /// The part has a step where it rises by more than this.
 const STEP: f64 = 1.0;
 /// A side of a groove that would be lower by less than this stays as it is, mm.
@@ -28,18 +27,35 @@ const LEAST: f64 = 0.01;
 const BESIDE: usize = 2;
 /// Chord tolerance, mm.
 const TOLERANCE: f64 = 0.02;
-/// Faces seen less steeply than this belong to what is seen: the cosine of their slope.
+/// Faces of the part that lean more than this are not seen: the cosine.
 const FACING: f64 = 0.05;
+/// Faces of the damaged part that lean more than 75° are sides of the damage or of the part, and no floor: the cosine of that.
+const SIDE: f64 = 0.26;
 
-/// How far a groove reaches beyond damage of a depth, mm.
-pub(super) fn reach(depth: f64, bead: f64) -> f64 {
-    depth / GENTLE + bead
+/// How a groove is shaped and filled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Shape {
+    /// Layers follow the floor.
+    Followed,
+    /// Layers are level. The groove's floor is as wide as a bead, and its sides rise by this much, mm per mm.
+    Level(f64),
+}
+
+impl Shape {
+    /// Rise of the sides.
+    fn rise(self) -> f64 {
+        match self {
+            Self::Followed => GENTLE,
+            Self::Level(rise) => rise,
+        }
+    }
 }
 
 /// A groove, seen along the direction in which it is open.
 pub(super) struct Groove {
     grid: Grid,
-    up: DVec3,
+    shape: Shape,
+    pub(super) up: DVec3,
     /// The damaged part, where it is seen, on the grid, mm.
     ground: Vec<Option<f64>>,
     /// Whether metal is missing or milled, on the grid.
@@ -59,35 +75,48 @@ impl Groove {
         found: &Found,
         part: &Mesh,
         base: &Mesh,
-        up: DVec3,
+        (up, shape): (DVec3, Shape),
         settings: Settings,
     ) -> Result<Self, Unfilled> {
         let Settings { step, tolerance, bead, .. } = settings;
-        let every = Grid::over(up, step, DVec2::ZERO, DVec2::ZERO)?;
-        let seen = || found.points.iter().map(|p| every.seen(*p).truncate());
-        let margin = reach(found.depth, bead) + (BESIDE + 1) as f64 * step;
+        let seen = || found.points.iter().map(|p| surface::seen(up, *p).truncate());
+        let margin = found.depth / shape.rise() + bead + (BESIDE + 1) as f64 * step;
         let low = seen().fold(DVec2::INFINITY, DVec2::min) - margin;
         let high = seen().fold(DVec2::NEG_INFINITY, DVec2::max) + margin;
         let grid = Grid::over(up, step, low, high)?;
-        let (top, ground) = (grid.tops(part), grid.tops(base));
+        let is_floor = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).normalize_or_zero().dot(up) > SIDE;
+        let (top, floors) = (grid.tops(part), grid.tops(&base.only(is_floor)));
+        // A side begins where the part does.
+        let side: Vec<bool> = floors.iter().map(Option::is_none).collect();
+        let ground: Vec<Option<f64>> = floors.into_iter().zip(&top).map(|(floor, top)| floor.or(*top)).collect();
         let near = near(&grid, seen());
         let is_deep = |k: usize| near[k] && matches!((top[k], ground[k]), (Some(t), Some(g)) if t - g > tolerance);
-        let (floor, open) = dug(&grid, &top, &ground, (0..top.len()).map(is_deep).collect());
-        if !open.contains(&true) {
+        let mut dug =
+            Dug { grid: &grid, top: &top, floor: ground.clone(), open: (0..top.len()).map(is_deep).collect() };
+        if matches!(shape, Shape::Level(_)) {
+            dug.widen(bead / 2.0);
+        }
+        dug.dig(shape.rise());
+        if !dug.open.contains(&true) {
             return Err(Unfilled::Left(Reason::Hidden));
         }
-        let kept = wider(&grid, &top, &open);
-        let only = |heights: &[Option<f64>]| heights.iter().zip(&kept).map(|(h, kept)| h.filter(|_| *kept)).collect();
-        let (top, floor) = (grid.surface(only(&top))?, grid.surface(only(&floor))?);
-        Ok(Self { grid, up, ground, open, top, floor: Arc::new(floor.rounded()) })
+        let (floor, kept) = dug.beside(&side, shape.rise());
+        let Dug { open, .. } = dug;
+        let only =
+            |heights: Vec<Option<f64>>| heights.into_iter().zip(&kept).map(|(h, kept)| h.filter(|_| *kept)).collect();
+        let (top, floor) = (only(top), extended(&grid, only(floor), shape.rise()));
+        let (top, floor) = (grid.surface(top)?, grid.surface(floor)?);
+        Ok(Self { grid, shape, up, ground, open, top, floor: Arc::new(floor.rounded()) })
     }
 
     /// Whether most of a place is hidden by what lies over it.
     pub(super) fn is_hidden(&self, found: &Found, tolerance: f64) -> bool {
         let over = |p: &&DVec3| {
             let seen = self.grid.seen(**p);
-            let top = self.nearest(seen.truncate()).and_then(|k| self.ground[k]);
-            top.is_some_and(|top| top > seen.z + tolerance + STEP * self.grid.step)
+            let Some(k) = self.nearest(seen.truncate()) else { return false };
+            // Beside a steep side some places lie on its upper rim.
+            let around = neighbours(&self.grid, k).map(|(n, _)| n).chain([k]).filter_map(|k| self.ground[k]);
+            around.fold(f64::INFINITY, f64::min) > seen.z + tolerance
         };
         2 * found.points.iter().filter(over).count() > found.points.len()
     }
@@ -138,33 +167,21 @@ impl Groove {
     /// # Errors
     /// [`WarpError`].
     pub(super) fn metal(&self, polygons: &[Polygon], settings: Settings, task: &Task) -> Result<Mesh, WarpError> {
-        // A layer is welded where at least half of it lies in the solid.
-        let over = settings.allowance - settings.layer / 2.0;
+        let over = settings.over();
         let mut metal = Mesh::default();
         for polygon in polygons {
             let Solid { vertices, triangles } = Solid::extrude(polygon, 0.0, 1.0);
             let mut flat = warp::divided(&Mesh { vertices, triangles, ..Mesh::default() }, self.grid.step, task)?;
             flat.vertices.iter_mut().for_each(|p| p.z *= self.depth(p.truncate()).max(0.0) + over);
+            if self.shape == Shape::Followed {
+                warp::check_slope(&self.floor, flat.vertices.iter().copied())?;
+            }
             metal.add(warp::bent(&self.floor, &flat, TOLERANCE, task)?);
         }
         Ok(metal)
     }
 
-    /// What is missing of the part and what is milled off, mm³.
-    pub(super) fn volumes(&self, polygons: &[Polygon]) -> (f64, f64) {
-        let cell = self.grid.step * self.grid.step;
-        let within = |k: &usize| polygons.iter().any(|polygon| polygon.contains(self.grid.place(*k)));
-        let at = |k: usize| {
-            let (place, ground) = (self.grid.place(k), self.ground[k]?);
-            let floor = self.floor.height(place);
-            Some(((self.top.height(place) - ground.max(floor)).max(0.0), (ground - floor).max(0.0)))
-        };
-        let parts = (0..self.open.len()).filter(within).filter_map(at);
-        let (missing, milled) = parts.fold((0.0, 0.0), |(a, b), (c, d)| (a + c, b + d));
-        (missing * cell, milled * cell)
-    }
-
-    /// The damaged part with the groove milled.
+    /// The damaged part with the groove milled, and how much is milled off, mm³.
     ///
     /// # Errors
     /// [`WarpError::Cancelled`].
@@ -174,28 +191,40 @@ impl Groove {
         polygons: &[Polygon],
         settings: Settings,
         task: &Task,
-    ) -> Result<Mesh, WarpError> {
+    ) -> Result<(Mesh, f64), WarpError> {
         let mut milled = self.divided(base, self.grid.step, task)?;
-        for vertex in &mut milled.vertices {
-            let seen = self.grid.seen(*vertex);
+        let cut = |p: &DVec3| {
+            let seen = self.grid.seen(*p);
             let place = seen.truncate();
-            if self.is_open(place) && polygons.iter().any(|polygon| polygon.contains(place)) {
-                let over = seen.z - self.floor.height(place);
-                let is_metal = over > 0.0 && seen.z < self.top.height(place) + settings.allowance;
-                *vertex -= if is_metal { self.up * over } else { DVec3::ZERO };
-            }
+            let over = seen.z - self.floor.height(place);
+            let is_metal = over > 0.0 && seen.z < self.top.height(place) + settings.allowance;
+            let is_within = || self.is_open(place) && polygons.iter().any(|polygon| polygon.contains(place));
+            if is_metal && is_within() { over } else { 0.0 }
+        };
+        let cuts: Vec<f64> = milled.vertices.iter().map(cut).collect();
+        let volume = |corners: &[u32; 3]| {
+            let [cut_a, cut_b, cut_c] = corners.map(|corner| cuts[corner as usize]);
+            let [a, b, c] = corners.map(|corner| self.grid.seen(milled.vertices[corner as usize]).truncate());
+            (b - a).perp_dot(c - a) / 2.0 * (cut_a + cut_b + cut_c) / 3.0
+        };
+        let volume = milled.triangles.iter().map(volume).sum();
+        milled.vertices.iter_mut().zip(&cuts).for_each(|(vertex, cut)| *vertex -= self.up * *cut);
+        Ok((milled, volume))
+    }
+
+    /// How the layers of what is welded lie.
+    pub(super) fn chart(&self, polygons: &[Polygon]) -> Chart {
+        if self.shape == Shape::Followed {
+            return Chart::Surface(Arc::clone(&self.floor));
         }
-        Ok(milled)
+        let lowest = self.places(polygons).map(|p| self.floor.height(p)).fold(f64::INFINITY, f64::min);
+        Chart::Plane(Plane { origin: self.up * lowest, up: self.up })
     }
 
-    pub(super) fn chart(&self) -> Chart {
-        Chart::Surface(Arc::clone(&self.floor))
-    }
-
-    /// Places of the grid within polygons, on the floor.
-    pub(super) fn places(&self, polygons: &[Polygon]) -> impl Iterator<Item = DVec3> {
+    /// Places of the grid within polygons, mm.
+    fn places(&self, polygons: &[Polygon]) -> impl Iterator<Item = DVec2> {
         let places = (0..self.open.len()).map(|k| self.grid.place(k));
-        places.filter(|p| polygons.iter().any(|polygon| polygon.contains(*p))).map(|p| p.extend(0.0))
+        places.filter(|p| polygons.iter().any(|polygon| polygon.contains(*p)))
     }
 
     /// How much lies between the floor and the part's surface at a place, mm.
@@ -246,32 +275,86 @@ fn near(grid: &Grid, places: impl Iterator<Item = DVec2>) -> Vec<bool> {
     near
 }
 
-/// The floor of a groove under deep places, and where metal is missing or milled.
-fn dug(grid: &Grid, top: &[Option<f64>], ground: &[Option<f64>], deep: Vec<bool>) -> (Vec<Option<f64>>, Vec<bool>) {
-    let (mut floor, mut open) = (ground.to_vec(), deep);
-    let mut queue: VecDeque<usize> = (0..open.len()).filter(|k| open[*k]).collect();
-    while let Some(k) = queue.pop_front() {
-        let Some(low) = floor[k] else { continue };
-        for (n, away) in neighbours(grid, k) {
-            let highest = low + GENTLE * away;
-            if is_even(top, k, n, away) && floor[n].is_some_and(|floor| floor > highest + LEAST) {
-                floor[n] = Some(highest);
-                open[n] = true;
-                queue.push_back(n);
+/// A groove that is being dug.
+struct Dug<'a> {
+    grid: &'a Grid,
+    /// The part.
+    top: &'a [Option<f64>],
+    floor: Vec<Option<f64>>,
+    /// Whether metal is missing or milled.
+    open: Vec<bool>,
+}
+
+impl Dug<'_> {
+    /// Makes the floor as low within a radius (mm) of each open place as it is there.
+    fn widen(&mut self, radius: f64) {
+        let steps = (radius / self.grid.step).ceil() as isize;
+        let before = self.floor.clone();
+        let ways = (-steps..=steps).flat_map(|y| (-steps..=steps).map(move |x| (x, y)));
+        let ways: Vec<(isize, isize)> = ways.filter(|way| away(*way, self.grid.step) <= radius).collect();
+        for k in (0..before.len()).filter(|k| self.open[*k]).collect::<Vec<_>>() {
+            let Some(low) = before[k] else { continue };
+            for (n, away) in ways.iter().filter_map(|way| beyond(self.grid, k, *way)) {
+                if is_even(self.top, k, n, away) && self.floor[n].is_some_and(|floor| floor > low) {
+                    (self.floor[n], self.open[n]) = (Some(low), true);
+                }
             }
         }
     }
-    (floor, open)
+
+    /// Cuts away what rises more steeply from open places, mm per mm.
+    fn dig(&mut self, rise: f64) {
+        let mut queue: VecDeque<usize> = (0..self.open.len()).filter(|k| self.open[*k]).collect();
+        while let Some(k) = queue.pop_front() {
+            let Some(low) = self.floor[k] else { continue };
+            for (n, away) in neighbours(self.grid, k) {
+                let highest = low + rise * away;
+                if is_even(self.top, k, n, away) && self.floor[n].is_some_and(|floor| floor > highest + LEAST) {
+                    (self.floor[n], self.open[n]) = (Some(highest), true);
+                    queue.push_back(n);
+                }
+            }
+        }
+    }
+
+    /// The floor with what lies around it up to steps and sides of the part, and where that is. Where the part falls away steeply
+    /// beside the groove, the floor falls no more than its sides rise, mm per mm.
+    fn beside(&self, side: &[bool], rise: f64) -> (Vec<Option<f64>>, Vec<bool>) {
+        let (mut floor, mut kept) = (self.floor.clone(), self.open.clone());
+        for _ in 0..BESIDE {
+            let lowest = |k: usize| {
+                let around = neighbours(self.grid, k).filter(|(n, away)| kept[*n] && is_even(self.top, k, *n, *away));
+                around.filter_map(|(n, away)| Some(floor[n]? - rise * away)).max_by(f64::total_cmp)
+            };
+            let beside = (0..kept.len()).filter(|k| !kept[*k] && !side[*k]);
+            let ring: Vec<(usize, f64)> = beside.filter_map(|k| Some((k, floor[k]?.max(lowest(k)?)))).collect();
+            for (k, height) in ring {
+                (floor[k], kept[k]) = (Some(height), true);
+            }
+        }
+        (floor, kept)
+    }
 }
 
-/// The same places and those around them, up to steps of the part.
-fn wider(grid: &Grid, top: &[Option<f64>], open: &[bool]) -> Vec<bool> {
-    let mut wider = open.to_vec();
-    for _ in 0..BESIDE {
-        let beside = |k: usize| neighbours(grid, k).any(|(n, away)| wider[n] && is_even(top, k, n, away));
-        wider = (0..wider.len()).map(|k| wider[k] || beside(k)).collect();
-    }
-    wider
+/// A floor with heights everywhere, which slopes no more than where they are known: midway between the lowest and the highest one
+/// (the extension of McShane and Whitney, 1934).
+fn extended(grid: &Grid, floor: Vec<Option<f64>>, rise: f64) -> Vec<Option<f64>> {
+    let cone = |sign: f64| {
+        let mut heights = floor.clone();
+        let mut queue: VecDeque<usize> = (0..heights.len()).filter(|k| heights[*k].is_some()).collect();
+        while let Some(k) = queue.pop_front() {
+            let Some(height) = heights[k] else { continue };
+            for (n, away) in neighbours(grid, k).filter(|(n, _)| floor[*n].is_none()) {
+                let reached = height + sign * rise * away;
+                if heights[n].is_none_or(|known| sign * (known - reached) > LEAST) {
+                    heights[n] = Some(reached);
+                    queue.push_back(n);
+                }
+            }
+        }
+        heights
+    };
+    cone(1.0).into_iter().zip(cone(-1.0)).map(|(high, low)| Some(f64::midpoint(high?, low?))).collect()
 }
 
 /// Whether the part has no step between two places.
@@ -281,13 +364,17 @@ fn is_even(top: &[Option<f64>], a: usize, b: usize, away: f64) -> bool {
 
 /// The places around one, and how far away they are, mm.
 fn neighbours(grid: &Grid, k: usize) -> impl Iterator<Item = (usize, f64)> {
-    let (column, row) = ((k % grid.columns) as isize, (k / grid.columns) as isize);
-    let (columns, rows, step) = (grid.columns as isize, grid.rows as isize, grid.step);
     let ways = (-1..=1).flat_map(|y| (-1..=1).map(move |x| (x, y))).filter(|way| *way != (0, 0));
-    ways.filter_map(move |(x, y)| {
-        let (column, row) = (column + x, row + y);
-        let is_on_it = (0..columns).contains(&column) && (0..rows).contains(&row);
-        let away = if x != 0 && y != 0 { SQRT_2 * step } else { step };
-        is_on_it.then_some(((row * columns + column) as usize, away))
-    })
+    ways.filter_map(move |way| beyond(grid, k, way))
+}
+
+/// The place some steps from another, where the grid has it, and how far away it is, mm.
+fn beyond(grid: &Grid, k: usize, way: (isize, isize)) -> Option<(usize, f64)> {
+    let column = (k % grid.columns).checked_add_signed(way.0).filter(|column| *column < grid.columns)?;
+    let row = (k / grid.columns).checked_add_signed(way.1).filter(|row| *row < grid.rows)?;
+    Some((row * grid.columns + column, away(way, grid.step)))
+}
+
+fn away(way: (isize, isize), step: f64) -> f64 {
+    DVec2::new(way.0 as f64, way.1 as f64).length() * step
 }

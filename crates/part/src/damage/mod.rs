@@ -1,20 +1,21 @@
 //! Damage: where a scan of a part lacks metal, and what is milled and welded to replace it.
 //!
 //! Metal is missing where the scan lies deeper inside the part than a tolerance. Damage is looked at along the direction in which it is
-//! open: what is missing is the part's height less that of the scan. Layers follow the floor of the damage; where that floor is steeper
-//! than layers can follow, or narrower than a bead, a groove is milled first ([`groove`]).
+//! open: what is missing is the part's height less that of the scan. Layers follow the floor of a shallow damage. Under others a groove is
+//! milled first, as wide as a bead at least, and filled with level layers ([`groove`]).
 
 mod found;
 mod groove;
 
-use crate::chart::warp::{self, WarpError};
+use crate::chart::warp::WarpError;
 use crate::chart::{Chart, SurfaceError};
 use crate::deviation;
 use crate::model::Mesh;
 use crate::task::{Cancelled, Task};
 use found::Found;
 use glam::DVec3;
-use groove::Groove;
+use groove::{Groove, Shape};
+use planar::{Join, Polygon, Region};
 
 /// What counts as damage, and how it is welded; lengths in mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +32,15 @@ pub struct Settings {
     pub layer: f64,
     /// Width of a bead.
     pub bead: f64,
+    /// Angle between the sides of a groove and its floor where layers are level, degrees.
+    pub sides: f64,
+}
+
+impl Settings {
+    /// How far the solid to be welded reaches above the part, mm: a layer is welded where at least half of it lies in the solid.
+    fn over(&self) -> f64 {
+        self.allowance - self.layer / 2.0
+    }
 }
 
 /// A damaged place, and the metal that replaces what is missing.
@@ -38,8 +48,10 @@ pub struct Settings {
 pub struct Damage {
     /// Metal to be welded, closed, mm.
     pub mesh: Mesh,
-    /// Layers over the floor of the damage, or of the groove.
+    /// Layers over the floor of the damage, or level ones in a groove.
     pub chart: Chart,
+    /// Direction along which they are stacked.
+    pub up: DVec3,
     /// Its deepest place, on the scan, mm.
     pub place: DVec3,
     /// How far the scan lies inside the part there, mm.
@@ -127,7 +139,7 @@ pub enum DamageError {
 /// };
 /// let part = mesh(&[[0.0, 0.0], [60.0, 0.0], [60.0, 20.0], [0.0, 20.0]]);
 /// let scan = mesh(&[[0.0, 0.0], [60.0, 0.0], [60.0, 20.0], [40.0, 20.0], [0.0, 14.0]]);
-/// let settings = Settings { up: None, step: 2.0, tolerance: 0.5, allowance: 2.0, layer: 2.0, bead: 6.0 };
+/// let settings = Settings { up: None, step: 2.0, tolerance: 0.5, allowance: 2.0, layer: 2.0, bead: 6.0, sides: 45.0 };
 /// let found = repair(&part, &scan, settings, &Task::new())?;
 /// let [dish] = &found.damages[..] else { return Err("one dish".into()) };
 /// assert!((dish.missing - (part.volume() - scan.volume())).abs() < 0.02 * dish.missing);
@@ -141,20 +153,108 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
     if scan.triangles.is_empty() {
         return Err(DamageError::NoFaces);
     }
+    let found = found::all(&surface, part, scan, settings, task)?;
+    let fill = |found| Place::filled(found, part, scan, settings, task);
+    let mut places = found.into_iter().map(fill).collect::<Result<Vec<_>, _>>()?;
+    while let Some([a, b]) = meeting(&places, settings.bead) {
+        let other = places.swap_remove(b).found;
+        let one = places.swap_remove(a).found;
+        places.push(fill(one.and(other))?);
+    }
     let mut repair = Repair { base: scan.clone(), ..Repair::default() };
-    for found in found::all(&surface, part, scan, settings, task)? {
-        match filled(part, &repair.base, &found, settings, task) {
-            Ok((damage, base)) => {
+    for Place { found, metal } in places {
+        match metal {
+            Ok(Metal { groove, polygons, damage }) => {
+                (repair.base, _) = groove.milled(&repair.base, &polygons, settings, task).map_err(cancelled)?;
                 repair.damages.push(damage);
-                repair.base = base;
             }
-            Err(Unfilled::Left(reason)) => repair.left.push(Left { place: found.place, depth: found.depth, reason }),
-            Err(Unfilled::Error(error)) => return Err(error),
+            Err(reason) => repair.left.push(Left { place: found.place, depth: found.depth, reason }),
         }
     }
     repair.damages.sort_by(|a, b| b.missing.total_cmp(&a.missing));
     repair.left.sort_by(|a, b| b.depth.total_cmp(&a.depth));
     Ok(repair)
+}
+
+/// A damaged place with the metal for it, or why there is none.
+struct Place {
+    found: Found,
+    metal: Result<Metal, Reason>,
+}
+
+struct Metal {
+    groove: Groove,
+    /// What is welded, seen along its direction.
+    polygons: Vec<Polygon>,
+    damage: Damage,
+}
+
+impl Place {
+    fn filled(found: Found, part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Result<Self, DamageError> {
+        match Metal::of(&found, part, scan, settings, task) {
+            Ok(metal) => Ok(Self { found, metal: Ok(metal) }),
+            Err(Unfilled::Left(reason)) => Ok(Self { found, metal: Err(reason) }),
+            Err(Unfilled::Error(error)) => Err(error),
+        }
+    }
+}
+
+impl Metal {
+    /// Whether another lies within some mm, if their boxes do.
+    fn meets(&self, other: &Self, within: f64) -> bool {
+        let region = |metal: &Self| Region::from_normalised(metal.polygons.clone());
+        self.damage.up != other.damage.up
+            || !region(self).offset(within, Join::ROUND).intersection(&region(other)).is_empty()
+    }
+
+    /// In layers that follow the damage if little is milled for them, otherwise in level ones.
+    fn of(found: &Found, part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Result<Self, Unfilled> {
+        let up = settings.up.unwrap_or(found.open);
+        let shaped = |shape| {
+            let groove = Groove::under(found, part, scan, (up, shape), settings)?;
+            if groove.is_hidden(found, settings.tolerance) {
+                return Err(Unfilled::Left(Reason::Hidden));
+            }
+            let polygons = groove.outline(part, settings, task)?;
+            if polygons.is_empty() {
+                return Err(Unfilled::Left(Reason::Narrow));
+            }
+            let chart = groove.chart(&polygons);
+            let mesh = groove.metal(&polygons, settings, task)?;
+            let (_, milled) = groove.milled(scan, &polygons, settings, task)?;
+            let over = settings.over() * polygons.iter().map(Polygon::area).sum::<f64>();
+            let missing = (mesh.volume() - milled - over).max(0.0);
+            let damage = Damage { mesh, chart, up, place: found.place, depth: found.depth, missing, milled };
+            Ok(Self { groove, polygons, damage })
+        };
+        match shaped(Shape::Followed) {
+            Ok(metal) if metal.damage.milled > MILLED * metal.damage.missing => {}
+            Err(Unfilled::Left(Reason::Steep | Reason::Narrow)) => {}
+            other => return other,
+        }
+        shaped(Shape::Level(settings.sides.to_radians().tan()))
+    }
+}
+
+/// Layers are level where more than this part of what is missing would be milled so that they can follow the damage.
+const MILLED: f64 = 0.5;
+
+/// Two places whose metal lies within a bead (mm) of one another: they are welded as one. The second has the higher number.
+fn meeting(places: &[Place], bead: f64) -> Option<[usize; 2]> {
+    let metal: Vec<(usize, &Metal)> =
+        places.iter().enumerate().filter_map(|(k, place)| Some((k, place.metal.as_ref().ok()?))).collect();
+    let boxes: Vec<(DVec3, DVec3)> = metal.iter().map(|(_, metal)| metal.damage.mesh.bounds()).collect();
+    let meet = |a: usize, b: usize| {
+        let (low, high) = (boxes[a].0.max(boxes[b].0) - bead, boxes[a].1.min(boxes[b].1));
+        low.cmple(high).all() && metal[a].1.meets(metal[b].1, bead)
+    };
+    let pairs = (0..metal.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
+    pairs.into_iter().find(|[a, b]| meet(*a, *b)).map(|pair| pair.map(|k| metal[k].0))
+}
+
+fn cancelled(_: WarpError) -> DamageError {
+    // Dividing a mesh fails for no other reason.
+    DamageError::Cancelled(Cancelled)
 }
 
 enum Unfilled {
@@ -181,29 +281,4 @@ impl From<WarpError> for Unfilled {
             WarpError::Steep { .. } | WarpError::Torn(_) => Self::Left(Reason::Steep),
         }
     }
-}
-
-/// The metal for one damaged place, and the damaged part with its groove milled.
-fn filled(
-    part: &Mesh,
-    base: &Mesh,
-    found: &Found,
-    settings: Settings,
-    task: &Task,
-) -> Result<(Damage, Mesh), Unfilled> {
-    let up = settings.up.unwrap_or(found.open);
-    let groove = Groove::under(found, part, base, up, settings)?;
-    if groove.is_hidden(found, settings.tolerance) {
-        return Err(Unfilled::Left(Reason::Hidden));
-    }
-    let polygons = groove.outline(part, settings, task)?;
-    if polygons.is_empty() {
-        return Err(Unfilled::Left(Reason::Narrow));
-    }
-    warp::check_slope(&groove.floor, groove.places(&polygons))?;
-    let mesh = groove.metal(&polygons, settings, task)?;
-    let (missing, milled) = groove.volumes(&polygons);
-    let base = groove.milled(base, &polygons, settings, task)?;
-    let chart = groove.chart();
-    Ok((Damage { mesh, chart, place: found.place, depth: found.depth, missing, milled }, base))
 }

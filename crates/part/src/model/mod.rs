@@ -339,6 +339,13 @@ impl Mesh {
         self.neighbours.extend(other.neighbours.iter().map(|across| across.map(shifted)));
     }
 
+    /// The faces for whose corners `kept` holds, without neighbours.
+    pub(crate) fn only(&self, kept: impl Fn(&[DVec3; 3]) -> bool) -> Self {
+        let corners = |triangle: &[u32; 3]| triangle.map(|corner| self.vertices[corner as usize]);
+        let triangles = self.triangles.iter().copied().filter(|triangle| kept(&corners(triangle))).collect();
+        Self { vertices: self.vertices.clone(), triangles, neighbours: Vec::new() }
+    }
+
     /// Lowest and highest coordinates, mm.
     pub fn bounds(&self) -> (DVec3, DVec3) {
         self.vertices.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &v| (low.min(v), high.max(v)))
