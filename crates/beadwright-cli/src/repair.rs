@@ -70,6 +70,8 @@ fn length(text: &str, range: std::ops::RangeInclusive<f64>) -> Result<f64, Strin
     if range.contains(&length) { Ok(length) } else { Err(wrong()) }
 }
 
+/// Damage may be bare to this fraction before it is said: its rim is.
+const BARE: f64 = 0.05;
 /// A scan that ends this far above the plate does not show where the part stands, mm.
 const OFF_PLATE: f64 = 0.05;
 
@@ -81,11 +83,19 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     files.differ_from(&[&arguments.model.model, &arguments.scan])?;
     let (task, bar) = progress::task()?;
     let part = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?.mesh;
+    let beside = arguments.model.drawn(&task)?.bounds().0.z;
     let (scan, lowest) = arguments.scan(&task)?;
     let found = damage::repair(&standing(&part, lowest), &scan, settings, &task);
     bar.finish_and_clear();
     let repair = found.map_err(advised).with_context(|| arguments.scan.display().to_string())?;
     let mut out = say::done(false);
+    if beside.abs() > OFF_PLATE && !arguments.model.placing.moves() {
+        writeln!(
+            out,
+            "warning: the part's file begins at z {beside:.1} mm, and the part was set on the plate; the scan is taken as it is. It must lie where \
+             the part is planned."
+        )?;
+    }
     if lowest > OFF_PLATE {
         writeln!(
             out,
@@ -93,17 +103,32 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
              lower than the part: set the robot's base that much higher, or scan down to the plate."
         )?;
     }
-    for Left { place, depth, reason } in &repair.left {
-        writeln!(out, "warning: the damage {}, {depth:.1} mm deep, is not welded: {reason}.", at(*place, lowest))?;
-    }
-    if repair.damages.is_empty() {
-        let tolerance = settings.tolerance;
-        let nothing = if repair.left.is_empty() { "no metal is missing" } else { "nothing can be welded" };
+    for Left { place, depth, up, reason } in &repair.left {
         writeln!(
             out,
-            "{nothing}; metal counts as missing where the scan lies more than {tolerance} mm inside the part."
+            "warning: the damage {}, {depth:.1} mm deep, is not welded along {}: {reason}. Another direction (--up) may do; what is worn all \
+             around an axis is welded with `clad --around`.",
+            at(*place, lowest),
+            words(*up)
+        )?;
+    }
+    let tolerance = settings.tolerance;
+    if repair.damages.is_empty() {
+        anyhow::ensure!(repair.left.is_empty(), "nothing can be welded, and nothing was written");
+        writeln!(
+            out,
+            "no metal is missing: the scan lies more than {tolerance} mm inside the part nowhere, or only in places smaller than a bead."
         )?;
         return Ok(());
+    }
+    for Damage { place, bare, .. } in repair.damages.iter().filter(|damage| damage.bare > BARE) {
+        writeln!(
+            out,
+            "warning: {:.0} % of the damage {} stays bare: it is too narrow for a bead there, or nothing lies under it along the direction \
+             of welding.",
+            100.0 * bare,
+            at(*place, lowest)
+        )?;
     }
     files.write(&repair)?;
     for (number, damage) in repair.damages.iter().enumerate() {
@@ -176,16 +201,22 @@ fn at(place: DVec3, lowest: f64) -> String {
     format!("near x {:.1} y {:.1} z {:.1} mm", place.x, place.y, place.z + lowest)
 }
 
+/// A direction as `--up` takes it.
+fn words(up: DVec3) -> String {
+    let [x, y, z] = up.to_array().map(|part| (part * 100.0).round() / 100.0 + 0.0);
+    format!("{x}/{y}/{z}")
+}
+
 fn sentence(damage: &Damage, lowest: f64) -> String {
     let Damage { chart, up, place, depth, missing, milled, .. } = damage;
-    let [x, y, z] = up.to_array().map(|part| (part * 100.0).round() / 100.0 + 0.0);
     let layers = if matches!(chart, Chart::Surface(_)) { "layers that follow it" } else { "level layers" };
     let milling =
         if *milled > 0.05e3 { format!("; mill a groove of {:.1} cm³ first", milled / 1e3) } else { String::new() };
     format!(
-        "{}: {depth:.1} mm deep, {:.1} cm³ missing, welded in {layers} along {x}/{y}/{z}{milling}.",
+        "{}: {depth:.1} mm deep, {:.1} cm³ missing, welded in {layers} along {}{milling}.",
         at(*place, lowest),
-        missing / 1e3
+        missing / 1e3,
+        words(*up)
     )
 }
 

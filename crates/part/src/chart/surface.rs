@@ -159,7 +159,7 @@ impl Surface {
         seen.with_z(seen.z - self.at_place(seen.truncate()).0)
     }
 
-    pub(super) fn at(&self, p: DVec3) -> At {
+    pub(crate) fn at(&self, p: DVec3) -> At {
         let turn = turn(self.up);
         let (height, slope) = self.at_place(p.truncate());
         let normal = DVec3::new(-slope.x, -slope.y, 1.0).normalize();

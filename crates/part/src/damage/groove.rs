@@ -14,11 +14,13 @@ use crate::task::Task;
 use glam::{DVec2, DVec3};
 use planar::isolines::isolines;
 use planar::{Bounds, FillRule, Join, Lattice, Polygon, Region, Ring};
-use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Steepest slope of a floor that layers follow: less than they could, since splines through its corners are a little steeper.
 const GENTLE: f64 = 0.22;
+/// Layers are taken to follow a floor on which beads lie no farther apart than by this factor: less than what is refused, since
+/// roughness between the points that are looked at makes it steeper.
+const FOLLOWED: f64 = 1.04;
 /// The part has a step where it rises by more than this.
 const STEP: f64 = 1.0;
 /// A side of a groove that would be lower by less than this stays as it is, mm.
@@ -173,12 +175,23 @@ impl Groove {
             let Solid { vertices, triangles } = Solid::extrude(polygon, 0.0, 1.0);
             let mut flat = warp::divided(&Mesh { vertices, triangles, ..Mesh::default() }, self.grid.step, task)?;
             flat.vertices.iter_mut().for_each(|p| p.z *= self.depth(p.truncate()).max(0.0) + over);
-            if self.shape == Shape::Followed {
-                warp::check_slope(&self.floor, flat.vertices.iter().copied())?;
+            let is_steep = |p: &&DVec3| self.floor.stretch(p.truncate()) > FOLLOWED;
+            if let Some(p) = flat.vertices.iter().find(is_steep).filter(|_| self.shape == Shape::Followed) {
+                let stretch = self.floor.stretch(p.truncate());
+                return Err(WarpError::Steep { place: self.floor.at(*p).place, stretch });
             }
             metal.add(warp::bent(&self.floor, &flat, TOLERANCE, task)?);
         }
         Ok(metal)
+    }
+
+    /// The fraction of a place that no metal covers.
+    pub(super) fn bare(&self, found: &Found, polygons: &[Polygon]) -> f64 {
+        let is_bare = |p: &&DVec3| {
+            let place = self.grid.seen(**p).truncate();
+            !polygons.iter().any(|polygon| polygon.contains(place))
+        };
+        found.points.iter().filter(is_bare).count() as f64 / found.points.len() as f64
     }
 
     /// The damaged part with the groove milled, and how much is milled off, mm³.
@@ -302,16 +315,18 @@ impl Dug<'_> {
         }
     }
 
-    /// Cuts away what rises more steeply from open places, mm per mm.
+    /// Cuts away what rises more steeply from open places, mm per mm, in sweeps over the grid until nothing changes.
     fn dig(&mut self, rise: f64) {
-        let mut queue: VecDeque<usize> = (0..self.open.len()).filter(|k| self.open[*k]).collect();
-        while let Some(k) = queue.pop_front() {
-            let Some(low) = self.floor[k] else { continue };
-            for (n, away) in neighbours(self.grid, k) {
-                let highest = low + rise * away;
-                if is_even(self.top, k, n, away) && self.floor[n].is_some_and(|floor| floor > highest + LEAST) {
-                    (self.floor[n], self.open[n]) = (Some(highest), true);
-                    queue.push_back(n);
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for k in sweeps(self.open.len()) {
+                let Some(low) = self.floor[k].filter(|_| self.open[k]) else { continue };
+                for (n, away) in neighbours(self.grid, k) {
+                    let highest = low + rise * away;
+                    if is_even(self.top, k, n, away) && self.floor[n].is_some_and(|floor| floor > highest + LEAST) {
+                        (self.floor[n], self.open[n], changed) = (Some(highest), true, true);
+                    }
                 }
             }
         }
@@ -340,21 +355,27 @@ impl Dug<'_> {
 /// (the extension of McShane and Whitney, 1934).
 fn extended(grid: &Grid, floor: Vec<Option<f64>>, rise: f64) -> Vec<Option<f64>> {
     let cone = |sign: f64| {
-        let mut heights = floor.clone();
-        let mut queue: VecDeque<usize> = (0..heights.len()).filter(|k| heights[*k].is_some()).collect();
-        while let Some(k) = queue.pop_front() {
-            let Some(height) = heights[k] else { continue };
-            for (n, away) in neighbours(grid, k).filter(|(n, _)| floor[*n].is_none()) {
-                let reached = height + sign * rise * away;
-                if heights[n].is_none_or(|known| sign * (known - reached) > LEAST) {
-                    heights[n] = Some(reached);
-                    queue.push_back(n);
+        let (mut heights, mut changed) = (floor.clone(), true);
+        while changed {
+            changed = false;
+            for k in sweeps(heights.len()) {
+                let Some(height) = heights[k] else { continue };
+                for (n, away) in neighbours(grid, k).filter(|(n, _)| floor[*n].is_none()) {
+                    let reached = height + sign * rise * away;
+                    if heights[n].is_none_or(|known| sign * (known - reached) > LEAST) {
+                        (heights[n], changed) = (Some(reached), true);
+                    }
                 }
             }
         }
         heights
     };
     cone(1.0).into_iter().zip(cone(-1.0)).map(|(high, low)| Some(f64::midpoint(high?, low?))).collect()
+}
+
+/// All places of a grid there and back, so that what spreads from place to place takes few sweeps.
+fn sweeps(count: usize) -> impl Iterator<Item = usize> {
+    (0..count).chain((0..count).rev())
 }
 
 /// Whether the part has no step between two places.

@@ -60,6 +60,8 @@ pub struct Damage {
     pub missing: f64,
     /// What is milled off the damaged part before it is welded, mm³.
     pub milled: f64,
+    /// Fraction of the place that no metal covers, such as a neck narrower than a bead.
+    pub bare: f64,
 }
 
 /// A damaged place that is not welded.
@@ -69,6 +71,8 @@ pub struct Left {
     pub place: DVec3,
     /// How far the scan lies inside the part there, mm.
     pub depth: f64,
+    /// The direction along which it was to be welded.
+    pub up: DVec3,
     /// Why.
     pub reason: Reason,
 }
@@ -80,10 +84,10 @@ pub enum Reason {
     #[error("it is narrower than a bead")]
     Narrow,
     /// Something of the damaged part lies over it.
-    #[error("the damaged part itself hides it along the direction of welding")]
+    #[error("along that direction it lies under metal, or nothing lies under it")]
     Hidden,
     /// Layers cannot follow the part.
-    #[error("the surface there slopes by more than 17.7° against the direction of welding")]
+    #[error("along that direction the surface is too steep")]
     Steep,
 }
 
@@ -168,7 +172,10 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
                 (repair.base, _) = groove.milled(&repair.base, &polygons, settings, task).map_err(cancelled)?;
                 repair.damages.push(damage);
             }
-            Err(reason) => repair.left.push(Left { place: found.place, depth: found.depth, reason }),
+            Err(reason) => {
+                let up = settings.up.unwrap_or(found.open);
+                repair.left.push(Left { place: found.place, depth: found.depth, up, reason });
+            }
         }
     }
     repair.damages.sort_by(|a, b| b.missing.total_cmp(&a.missing));
@@ -222,9 +229,10 @@ impl Metal {
             let chart = groove.chart(&polygons);
             let mesh = groove.metal(&polygons, settings, task)?;
             let (_, milled) = groove.milled(scan, &polygons, settings, task)?;
+            let bare = groove.bare(found, &polygons);
             let over = settings.over() * polygons.iter().map(Polygon::area).sum::<f64>();
             let missing = (mesh.volume() - milled - over).max(0.0);
-            let damage = Damage { mesh, chart, up, place: found.place, depth: found.depth, missing, milled };
+            let damage = Damage { mesh, chart, up, place: found.place, depth: found.depth, missing, milled, bare };
             Ok(Self { groove, polygons, damage })
         };
         match shaped(Shape::Followed) {
