@@ -72,7 +72,7 @@ fn length(text: &str, range: std::ops::RangeInclusive<f64>) -> Result<f64, Strin
 
 /// Damage may be bare to this fraction before it is said: its rim is.
 const BARE: f64 = 0.05;
-/// A scan that ends this far above the plate does not show where the part stands, mm.
+/// What lies this much higher or lower is said, mm.
 const OFF_PLATE: f64 = 0.05;
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -85,9 +85,19 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let part = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?.mesh;
     let beside = arguments.model.drawn(&task)?.bounds().0.z;
     let (scan, lowest) = arguments.scan(&task)?;
-    let found = damage::repair(&standing(&part, lowest), &scan, settings, &task);
+    let found = |lower: f64| {
+        let found = damage::repair(&lowered(&part, lower), &lowered(&scan, lower - lowest), settings, &task);
+        found.map_err(advised).with_context(|| arguments.scan.display().to_string())
+    };
+    // How much lower than the part the program lies, mm: `plan` sets the lowest point of scan and metal on z = 0.
+    let mut lower = lowest;
+    let mut repair = found(lower)?;
+    let under = repair.damages.iter().map(|damage| damage.mesh.bounds().0.z).fold(0.0, f64::min);
+    if under < 0.0 {
+        lower += under;
+        repair = found(lower)?;
+    }
     bar.finish_and_clear();
-    let repair = found.map_err(advised).with_context(|| arguments.scan.display().to_string())?;
     let mut out = say::done(false);
     if beside.abs() > OFF_PLATE && !arguments.model.placing.moves() {
         writeln!(
@@ -96,11 +106,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
              the part is planned."
         )?;
     }
-    if lowest > OFF_PLATE {
+    if lower.abs() > OFF_PLATE {
+        let (by, way, against) = if lower > 0.0 { (lower, "lower", "higher") } else { (-lower, "higher", "lower") };
         writeln!(
             out,
-            "warning: the scan ends {lowest:.1} mm above the plate. `plan` takes its lowest point for z = 0, so the program lies {lowest:.1} mm \
-             lower than the part: set the robot's base that much higher, or scan down to the plate."
+            "warning: `plan` takes the lowest point of scan and metal for z = 0, so the program lies {by:.1} mm {way} than the part: set the \
+             robot's base that much {against}."
         )?;
     }
     for Left { place, depth, up, reason } in &repair.left {
@@ -108,7 +119,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             out,
             "warning: the damage {}, {depth:.1} mm deep, is not welded along {}: {reason}. Another direction (--up) may do; what is worn all \
              around an axis is welded with `clad --around`.",
-            at(*place, lowest),
+            at(*place, lower),
             words(*up)
         )?;
     }
@@ -127,12 +138,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             "warning: {:.0} % of the damage {} stays bare: it is too narrow for a bead there, or nothing lies under it along the direction \
              of welding.",
             100.0 * bare,
-            at(*place, lowest)
+            at(*place, lower)
         )?;
     }
     files.write(&repair)?;
     for (number, damage) in repair.damages.iter().enumerate() {
-        writeln!(out, "{}. {}", number + 1, sentence(damage, lowest))?;
+        writeln!(out, "{}. {}", number + 1, sentence(damage, lower))?;
     }
     writeln!(
         out,
@@ -177,11 +188,10 @@ impl Arguments {
     }
 }
 
-/// The part, lowered with its scan.
-fn standing(part: &Mesh, lowest: f64) -> Mesh {
-    let mut part = part.clone();
-    part.vertices.iter_mut().for_each(|p| p.z -= lowest);
-    part
+fn lowered(mesh: &Mesh, by: f64) -> Mesh {
+    let mut mesh = mesh.clone();
+    mesh.vertices.iter_mut().for_each(|p| p.z -= by);
+    mesh
 }
 
 /// An error with the flags that help.
@@ -197,8 +207,9 @@ fn advised(error: DamageError) -> anyhow::Error {
     }
 }
 
-fn at(place: DVec3, lowest: f64) -> String {
-    format!("near x {:.1} y {:.1} z {:.1} mm", place.x, place.y, place.z + lowest)
+/// A place, in the coordinates of the part.
+fn at(place: DVec3, lower: f64) -> String {
+    format!("near x {:.1} y {:.1} z {:.1} mm", place.x, place.y, place.z + lower)
 }
 
 /// A direction as `--up` takes it.
@@ -207,14 +218,14 @@ fn words(up: DVec3) -> String {
     format!("{x}/{y}/{z}")
 }
 
-fn sentence(damage: &Damage, lowest: f64) -> String {
+fn sentence(damage: &Damage, lower: f64) -> String {
     let Damage { chart, up, place, depth, missing, milled, .. } = damage;
     let layers = if matches!(chart, Chart::Surface(_)) { "layers that follow it" } else { "level layers" };
     let milling =
         if *milled > 0.05e3 { format!("; mill a groove of {:.1} cm³ first", milled / 1e3) } else { String::new() };
     format!(
         "{}: {depth:.1} mm deep, {:.1} cm³ missing, welded in {layers} along {}{milling}.",
-        at(*place, lowest),
+        at(*place, lower),
         missing / 1e3,
         words(*up)
     )

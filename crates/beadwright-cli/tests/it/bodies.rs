@@ -135,6 +135,15 @@ fn a_repair_is_planned_by_the_command_that_comes_with_it() {
         json["built"]["agreement"].as_f64().unwrap() > 0.95 && json["figures"]["mean"].as_f64().unwrap().abs() < 0.3
     );
 
+    // Below, where it ends under what is left of the part.
+    block(&folder.path().join("below.stl"), [0.0, 0.0, 3.0], [80.0, 60.0, 20.0]);
+    let said = done(folder.path(), &["repair", "part.stl", "below.stl", "-o", "under.stl"]);
+    assert!(said.contains("1.0 mm higher than the part") && said.contains("along 0/0/-1"), "{said}");
+    let words: Vec<&str> =
+        said.lines().last().unwrap().trim().split(' ').skip(1).chain(["--json", "-o", "out"]).collect();
+    let json: serde_json::Value = serde_json::from_slice(&run(folder.path(), &words).stdout).unwrap();
+    assert_eq!((json["layers"].as_u64(), json["arc_starts"].as_u64()), (Some(2), Some(2)), "{said}");
+
     // Nothing is missing, and nothing is written; a scan of the top alone lies above the plate.
     let said = done(folder.path(), &["repair", "part.stl", "part.stl", "-o", "none.stl"]);
     assert!(said.starts_with("no metal is missing") && !folder.path().join("none.stl").exists(), "{said}");
@@ -142,7 +151,9 @@ fn a_repair_is_planned_by_the_command_that_comes_with_it() {
     fs::write(folder.path().join("above.obj"), above).unwrap();
     let said = done(folder.path(), &["repair", "part.stl", "above.obj"]);
     assert!(
-        said.starts_with("warning: the scan ends 17.0 mm above the plate.") && said.contains("z 17.0 mm"),
+        said.starts_with("warning: `plan`")
+            && said.contains("17.0 mm lower than the part")
+            && said.contains("z 17.0 mm"),
         "{said}"
     );
 

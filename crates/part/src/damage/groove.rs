@@ -57,7 +57,7 @@ impl Shape {
 pub(super) struct Groove {
     grid: Grid,
     shape: Shape,
-    pub(super) up: DVec3,
+    up: DVec3,
     /// The damaged part, where it is seen, on the grid, mm.
     ground: Vec<Option<f64>>,
     /// Whether metal is missing or milled, on the grid.
@@ -65,7 +65,7 @@ pub(super) struct Groove {
     /// The part's surface.
     top: Surface,
     /// What is welded on.
-    pub(super) floor: Arc<Surface>,
+    floor: Arc<Surface>,
 }
 
 impl Groove {

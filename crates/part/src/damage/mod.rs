@@ -2,7 +2,7 @@
 //!
 //! Metal is missing where the scan lies deeper inside the part than a tolerance. Damage is looked at along the direction in which it is
 //! open: what is missing is the part's height less that of the scan. Layers follow the floor of a shallow damage. Under others a groove is
-//! milled first, as wide as a bead at least, and filled with level layers ([`groove`]).
+//! milled first, as wide as a bead at least, and filled with level layers.
 
 mod found;
 mod groove;
@@ -83,7 +83,7 @@ pub enum Reason {
     /// No bead fits.
     #[error("it is narrower than a bead")]
     Narrow,
-    /// Something of the damaged part lies over it.
+    /// Something of the damaged part lies over it, or it has no floor.
     #[error("along that direction it lies under metal, or nothing lies under it")]
     Hidden,
     /// Layers cannot follow the part.
@@ -244,7 +244,7 @@ impl Metal {
     }
 }
 
-/// Layers are level where more than this part of what is missing would be milled so that they can follow the damage.
+/// Layers are level where more than this fraction of what is missing would be milled so that they can follow the damage.
 const MILLED: f64 = 0.5;
 
 /// Two places whose metal lies within a bead (mm) of one another: they are welded as one. The second has the higher number.

@@ -141,7 +141,7 @@ impl Parameters {
     /// Parameter `i` as the number of items that follow, each of `size` parameters.
     ///
     /// # Errors
-    /// As [`Parameters::real`], and when the record is too short for so many items.
+    /// As [`Parameters::real`], and when the record has fewer items.
     pub(super) fn count(&self, i: usize, size: usize) -> Result<usize, String> {
         let value = self.integer(i)?;
         let room = self.len().saturating_sub(i + 1) / size.max(1);
