@@ -28,7 +28,7 @@ cargo test -p beadwright --test it -- --ignored --nocapture cnc::linuxcnc
 if [ -n "${BEADWRIGHT_LINUXCNC_MODULES:-}" ]; then
     cc -O1 -rdynamic -o "$folder/kinematics" benches/linuxcnc-kinematics.c -ldl -lm
     export BEADWRIGHT_LINUXCNC_KINEMATICS="$folder/kinematics:$BEADWRIGHT_LINUXCNC_MODULES"
-    cargo test -p beadwright --test it -- --ignored --nocapture positioner::the_joints_of_linuxcnc
+    cargo test -p beadwright --test it -- --ignored --nocapture the_joints_of_linuxcnc
 fi
 # The lines that end the arc run only where LinuxCNC is installed; halrun does not run for root.
 BEADWRIGHT_HALRUN="${BEADWRIGHT_HALRUN:-$(command -v halrun || true)}"

@@ -37,7 +37,7 @@ use crate::bead::wall::{WallBead, WallError};
 use crate::bead::{Bead, MassBalance};
 use crate::chart::Chart;
 use crate::dialect::inform::InformSpeed;
-use crate::dialect::reading::Options;
+use crate::dialect::reading::{Options, Station};
 use crate::dialect::{Job, Sections};
 use crate::fill::around::Around;
 use crate::fill::{FillSettings, StrategyName};
@@ -50,7 +50,7 @@ use crate::preform::PreformSettings;
 use crate::preform::figures::Rates;
 use crate::preform::section::PreformSection;
 use crate::process::{Cost, Dot, Process, Spot, StartStop, TorchShape, Travel, Wire};
-use crate::program::{ProgramSettings, Programmer, Safety, Weave};
+use crate::program::{Positioner, ProgramSettings, Programmer, Safety, Weave};
 use crate::robot::Track;
 use crate::slice::{LayerFit, SliceOptions};
 use crate::weld::WeldSettings;
@@ -524,8 +524,14 @@ impl Profile {
             Some("urscript") => sections.urscript.as_ref().map(|script| script.max_megabytes),
             _ => None,
         };
+        let turning = self.program.positioner.clone();
+        let turning = turning.or_else(|| self.program.has_table().then(Positioner::table));
+        let inform_station = sections.inform.as_ref().zip(turning).and_then(|(inform, positioner)| {
+            let (pulses, frame_turns) = (inform.station_pulses.clone(), inform.frame_turns?);
+            (pulses.len() == positioner.count()).then_some(Station { positioner, pulses, frame_turns })
+        });
         let (arc, file) = (sections.arc_codes(), file.map(str::to_owned));
-        Options { arc, filament_diameter: None, inform_cm_per_min, file, max_megabytes }
+        Options { arc, filament_diameter: None, inform_cm_per_min, inform_station, file, max_megabytes }
     }
 
     /// Why no program should be written with this profile, as sentences.

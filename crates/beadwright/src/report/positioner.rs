@@ -71,6 +71,7 @@ impl Turns {
         let pictures: String = numbered.map(|(number, axis)| self.plot(number, axis).svg()).collect();
         let when = match self.positioner.turning {
             Turning::Index => "between passes",
+            Turning::IndexAtHome => "between passes, with the torch at home",
             Turning::Follow => "at every point",
         };
         format!(

@@ -5,10 +5,11 @@ use bead_part::text::toml::nearest;
 use serde::Deserialize;
 
 /// The built-in positioners as (name, TOML text).
-pub const MACHINES: [(&str, &str); 6] = [
+pub const MACHINES: [(&str, &str); 7] = [
     ("kuka-dkp-400", include_str!("../../positioners/kuka-dkp-400.toml")),
     ("abb-irbp-a250", include_str!("../../positioners/abb-irbp-a250.toml")),
     ("yaskawa-mt1-500", include_str!("../../positioners/yaskawa-mt1-500.toml")),
+    ("yaskawa-d500", include_str!("../../positioners/yaskawa-d500.toml")),
     ("trunnion-ac", include_str!("../../positioners/trunnion-ac.toml")),
     ("trunnion-bc", include_str!("../../positioners/trunnion-bc.toml")),
     ("head-tailstock", include_str!("../../positioners/head-tailstock.toml")),
@@ -66,7 +67,7 @@ impl Machine {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Positioner"))]
 pub(super) struct Keys {
-    /// `"index"` turns it between passes, `"follow"` at every point.
+    /// `"index"` turns it between passes, `"index-at-home"` too, with the torch at home (URScript), `"follow"` at every point.
     turning: Turning,
     /// Name of a built-in positioner, such as `kuka-dkp-400`; `beadwright profile positioner` lists them. The part's origin is the
     /// middle of its plate. It stands for `axes` and `up`; leave it out where they are given.

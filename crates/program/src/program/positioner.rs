@@ -28,6 +28,8 @@ const MOST_PER_TURN: f64 = 2.0;
 pub enum Turning {
     /// Between passes only, with the arc off: each pass is welded in one position.
     Index,
+    /// The same, while the torch is at home: for axes that the robot's controller does not move.
+    IndexAtHome,
     /// At every point, together with the torch, as the controller coordinates them.
     Follow,
 }
@@ -55,7 +57,7 @@ pub struct PositionerAxis {
 #[serde(try_from = "Keys")]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Positioner {
-    /// `"index"` turns it between passes, `"follow"` at every point.
+    /// `"index"` turns it between passes, `"index-at-home"` too, with the torch at home (URScript), `"follow"` at every point.
     pub turning: Turning,
     /// From the floor to the part: one axis, or the one that tilts and the one that it carries.
     pub axes: Vec<PositionerAxis>,
@@ -105,6 +107,12 @@ impl Positioner {
             });
         let standing = self.standing();
         Held { angles, turn: (standing * turn).normalize(), shift: standing * shift }
+    }
+
+    /// A table that turns about the part's z axis as far as it likes.
+    pub fn table() -> Self {
+        let axis = PositionerAxis { direction: [0.0, 0.0, 1.0], through: [0.0; 3], limits: [-1e5, 1e5], speed: 1.0 };
+        Self { turning: Turning::Follow, axes: vec![axis], up: [0.0, 0.0, 1.0] }
     }
 
     /// Rotation from the part's directions, with all axes at 0, to those of the cell.
@@ -304,23 +312,25 @@ impl Holder {
         let Some(first) = pass.iter().position(welds) else { return };
         let (steps, before) = (self.steps(pass, first), self.angles);
         let start = match self.positioner.turning {
-            Turning::Index => self.indexed(&steps),
+            Turning::Index | Turning::IndexAtHome => self.indexed(&steps),
             Turning::Follow => self.begun(&steps),
         };
         self.waited += self.waits(&pass[..first], before, start);
         let way = self.positioner.farthest(before, start);
         // When it is wound back by a turn, the torch cannot follow the part around: it is a joint move.
-        let before = if way > WOUND { start } else { before };
-        let first = if way > WOUND { jumped(pass, first) } else { first };
+        let most = if self.positioner.turning == Turning::IndexAtHome { 0.0 } else { WOUND };
+        let before = if way > most { start } else { before };
+        let first = if way > most { jumped(pass, first) } else { first };
         self.approach(&mut pass[..first], before, start);
         self.angles = start;
-        for (instruction, step) in pass[first..].iter_mut().filter(|i| welds(i)).zip(&steps[1..]) {
-            if self.positioner.turning == Turning::Follow {
+        let mut steps = steps[1..].iter();
+        for instruction in &mut pass[first..] {
+            let step = if welds(instruction) { steps.next() } else { None };
+            if let Some(step) = step.filter(|_| self.positioner.turning == Turning::Follow) {
                 self.angles = self.followed(self.angles, *step);
             }
-            let held = self.positioner.held(self.angles);
             if let Some(attitude) = instruction.attitude_mut() {
-                attitude.held = Some(held);
+                attitude.held = Some(self.positioner.held(self.angles));
             }
         }
         self.at = pass.iter().rev().find_map(Instruction::target).or(self.at);

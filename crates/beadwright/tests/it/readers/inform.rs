@@ -5,14 +5,21 @@ use std::collections::BTreeMap;
 
 /// Runs the job of that name (file names as keys).
 pub fn run(files: &BTreeMap<String, String>, main: &str) -> Motion {
-    let machine = Machine::default();
-    let mut reader = Reader { files, machine, exact: true, arc_ended: false, homes: 0, start: 0.0, shift: 0.0 };
+    run_turned(files, main, &|stand| stand)
+}
+
+/// The same where a station turns the part: `on_part` brings a stand of the frame, with the pulses of the station, to the part.
+pub fn run_turned(files: &BTreeMap<String, String>, main: &str, on_part: &dyn Fn(Stand) -> Stand) -> Motion {
+    let (machine, axes) = (Machine::default(), [None; 2]);
+    let mut reader =
+        Reader { on_part, files, machine, exact: true, arc_ended: false, homes: 0, start: 0.0, shift: 0.0, axes };
     reader.job(main);
     assert_eq!(reader.homes, 2);
     reader.machine.finish()
 }
 
 struct Reader<'a> {
+    on_part: &'a dyn Fn(Stand) -> Stand,
     files: &'a BTreeMap<String, String>,
     machine: Machine,
     exact: bool,
@@ -23,6 +30,24 @@ struct Reader<'a> {
     start: f64,
     /// Height in the position variable of the shift, mm.
     shift: f64,
+    /// Where the current move brings the axes of the station, pulses.
+    axes: [Option<f64>; 2],
+}
+
+/// A move without what it says of the station, and where that brings it: both move together, at speeds that only the moves of joints give
+/// to the station too.
+fn with_station(line: &str, stations: &[&str]) -> (String, [Option<f64>; 2]) {
+    let Some((robot, station)) = line.split_once("  +MOVJ ") else {
+        assert!(stations.is_empty() || !line.starts_with("MOV"), "{line} leaves the station where it is");
+        return (line.to_owned(), [None; 2]);
+    };
+    let number = &robot.split_whitespace().nth(1).unwrap()[1..];
+    let (name, speed) = station.split_once(' ').unwrap_or((station, ""));
+    assert_eq!(name, format!("EC{number}"), "{line}");
+    assert_eq!(speed.starts_with("VJ="), robot.starts_with("MOVJ"), "{line}");
+    let numbers = stations[number.parse::<usize>().unwrap()].strip_prefix(&format!("{name}=")).unwrap();
+    let mut pulses = numbers.split(',').map(|pulses| pulses.parse::<i64>().unwrap() as f64);
+    (robot.strip_prefix('S').unwrap_or(robot).to_owned(), [pulses.next(), pulses.next()])
 }
 
 impl Reader<'_> {
@@ -37,7 +62,14 @@ impl Reader<'_> {
         let positions: Vec<&str> = lines.iter().filter(|l| l.starts_with('C') && l.contains('=')).copied().collect();
         let positions: Vec<&str> =
             positions.into_iter().filter(|l| l[1..6].bytes().all(|b| b.is_ascii_digit())).collect();
-        assert_eq!(lines[3], format!("///NPOS {},0,0,0,0,0", positions.len()));
+        // A station has a position for each of the robot's.
+        let stations: Vec<&str> = lines.iter().filter(|l| l.starts_with("EC") && l.contains('=')).copied().collect();
+        assert!(stations.is_empty() || stations.len() == positions.len(), "{name}");
+        assert_eq!(lines[3], format!("///NPOS {},0,{},0,0,0", positions.len(), stations.len()));
+        assert_eq!(lines.contains(&"///GROUP2 ST1"), !stations.is_empty());
+        let pulses = lines.iter().position(|l| *l == "///PULSE");
+        assert!(stations.iter().all(|own| pulses < lines.iter().position(|line| line == own)), "{name}");
+        assert!(stations.is_empty() || pulses.is_some(), "{name}: a station has pulses only");
         let comment = lines.iter().find_map(|l| l.strip_prefix("///COMM ")).unwrap();
         assert!(comment.len() <= 32);
         let relative = lines.contains(&"///RECTAN");
@@ -51,7 +83,9 @@ impl Reader<'_> {
             at = match self.jump(lines[at]) {
                 Some(label) => at + lines[at..].iter().position(|line| *line == label).expect("the label comes behind"),
                 None => {
-                    self.instruction(lines[at], &positions, &mut used, &mut circle);
+                    let (line, axes) = with_station(lines[at], &stations);
+                    self.axes = axes;
+                    self.instruction(&line, &positions, &mut used, &mut circle);
                     at + 1
                 }
             };
@@ -82,7 +116,7 @@ impl Reader<'_> {
             let numbers: Vec<f64> = numbers.split(',').map(|v| v.parse().unwrap()).collect();
             assert_eq!(numbers.len(), 6);
             let tool = euler(numbers[5], numbers[4], numbers[3]);
-            let to = Stand { at: [numbers[0], numbers[1], numbers[2]], tool, axes: [None; 2] };
+            let to = (self.on_part)(Stand { at: [numbers[0], numbers[1], numbers[2]], tool, axes: self.axes });
             if words[0] == "MOVJ" {
                 assert!(words[2].starts_with("VJ=") && !self.machine.burns());
                 match words.get(3) {

@@ -29,10 +29,21 @@ pub fn run(text: &str, arc: u32) -> Motion {
         }
     }
     assert!(open.is_none());
-    let mut reader =
-        Reader { functions, arc, machine: Machine::default(), blend: 0.0, homes: 0, before: 0.0, heights: Vec::new() };
+    let mut reader = Reader {
+        functions,
+        arc,
+        machine: Machine::default(),
+        blend: 0.0,
+        homes: 0,
+        before: 0.0,
+        heights: Vec::new(),
+        turns: 0,
+        at_home: false,
+        axes: [None; 2],
+    };
     body.iter().for_each(|line| reader.statement(line));
-    assert_eq!(reader.homes, 2);
+    // Home at both ends and before each turn of the part; the last turn back follows the last of these.
+    assert_eq!(reader.homes, 2 + reader.turns.saturating_sub(1));
     reader.machine.finish()
 }
 
@@ -46,6 +57,10 @@ struct Reader<'a> {
     homes: usize,
     /// Heights added to layers, mm.
     heights: Vec<f64>,
+    /// How often the part was turned, whether the torch is at home, and the angles, °.
+    turns: usize,
+    at_home: bool,
+    axes: [Option<f64>; 2],
 }
 
 impl Reader<'_> {
@@ -53,8 +68,15 @@ impl Reader<'_> {
         if line.starts_with("movej([") {
             assert!(!self.machine.burns());
             self.homes += 1;
+            self.at_home = true;
         } else if let Some(to) = line.strip_prefix("movej(pose_trans(part_frame, p[") {
-            self.machine.approach(pose(to));
+            self.at_home = false;
+            self.machine.approach(Stand { axes: self.axes, ..pose(to) });
+        } else if let Some(angles) = line.strip_prefix("turn_part(") {
+            assert!(self.at_home, "the part turns under the torch");
+            let mut angles = angles.strip_suffix(')').unwrap().split(", ").map(|angle| angle.parse().unwrap());
+            self.axes = [angles.next(), angles.next()];
+            self.turns += 1;
         } else if line.starts_with("movel(") || line.starts_with("movec(") {
             self.motion(line);
         } else if let Some(rest) = line.strip_prefix("set_standard_digital_out(") {
@@ -88,7 +110,9 @@ impl Reader<'_> {
     }
 
     fn motion(&mut self, line: &str) {
-        let poses: Vec<Stand> = line.split("pose_trans(part_frame, p[").skip(1).map(pose).collect();
+        let poses = line.split("pose_trans(part_frame, p[").skip(1);
+        let poses: Vec<Stand> = poses.map(|text| Stand { axes: self.axes, ..pose(text) }).collect();
+        self.at_home = false;
         let value = |key: &str| -> Option<f64> {
             let rest = line.split(&format!(", {key}=")).nth(1)?;
             Some(rest.split([',', ')']).next()?.parse().unwrap())

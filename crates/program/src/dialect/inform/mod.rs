@@ -14,8 +14,8 @@ pub const DIALECT: Dialect = Dialect {
     language: "INFORM",
     module_extensions: &["jbi"],
     linear_axis: false,
-    table: false,
-    positioner: false,
+    table: true,
+    positioner: true,
     typical: read::typical,
     read: read::read,
 };

@@ -1,6 +1,7 @@
 //! Reads Yaskawa INFORM (`.jbi`): MOVJ, MOVL and MOVC to the positions of the job, and the jobs that it calls.
 //!
-//! Positions are in the job's frame. The arc is switched by `ARCON` and `ARCOF`, or by the codes in the options. To the
+//! Positions are in the job's frame. Where it does not turn with a station (`+MOVJ EC00001`), they are brought back to the
+//! part, if the options describe the station. The arc is switched by `ARCON` and `ARCOF`, or by the codes in the options. To the
 //! controller, consecutive MOVC are one chain. Three of them are an arc; `FPT` on the last, or a MOVL to it, ends that
 //! arc and lets the next one begin there, which Yaskawa's manuals require where the circle changes. Without either,
 //! each further point lies on the circle through it and the two points before it. (Unconfirmed: verified only for
@@ -10,7 +11,7 @@ use crate::dialect::reading::fault::{BAD_NAME, BLENDED_SWITCH, RAPID_WITH_ARC, T
 use crate::dialect::reading::loops::{Next, holds, unrolled};
 use crate::dialect::reading::trace::{Stated, Step, Trace};
 use crate::dialect::reading::words::{Patterns, compact, number};
-use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram};
+use crate::dialect::reading::{FindModule, Options, ReadError, ReadProgram, Station};
 use glam::{DQuat, DVec3, EulerRot};
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -36,11 +37,24 @@ const ON_THE_SPOT_MM: f64 = 0.005;
 /// A chain that continues this far from its circle has left it, mm.
 const OFF_CIRCLE_MM: f64 = 0.1;
 
-/// A job: instructions with their lines, and positions by name; `None` for positions in pulses.
+/// How the positions that follow are given.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Given {
+    /// X, Y, Z, Rx, Ry, Rz.
+    Cartesian,
+    /// Each axis in pulses.
+    Pulses,
+    /// Each axis in degrees.
+    Degrees,
+}
+
+/// A job: instructions with their lines, and positions by name; `None` for positions of the robot's axes.
 struct Job {
     module: Option<String>,
     instructions: Vec<(usize, String)>,
     positions: HashMap<String, Option<(DVec3, Stated)>>,
+    /// Positions of a station by name, in pulses or degrees.
+    stations: HashMap<String, (Given, Vec<f64>)>,
 }
 
 /// Whether a line can occur only in a job.
@@ -56,6 +70,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         on: Patterns::new(&options.arc.on),
         off: Patterns::new(&options.arc.off),
         unit: if options.inform_cm_per_min { 10.0 / 60.0 } else { 1.0 },
+        station: options.inform_station.clone(),
         circle: Circle::None,
         variables: HashMap::new(),
         unshifted: false,
@@ -63,6 +78,7 @@ pub(super) fn read(text: &str, module: &mut FindModule<'_>, options: &Options) -
         weaves: false,
         shifts: false,
     };
+    reader.trace.frame_turns = reader.station.is_some();
     let main = reader.job(None, text)?;
     if main.instructions.is_empty() {
         return Err(ReadError::NoProgram("INFORM"));
@@ -96,6 +112,7 @@ struct Reader<'a> {
     off: Patterns,
     /// mm/s for V=1.
     unit: f64,
+    station: Option<Station>,
     circle: Circle,
     /// Variables with a plain number, such as `D090`.
     variables: HashMap<String, f64>,
@@ -111,16 +128,25 @@ struct Reader<'a> {
 impl Reader<'_> {
     fn job(&mut self, module: Option<&str>, text: &str) -> Result<Rc<Job>, ReadError> {
         let caller = std::mem::replace(&mut self.trace.module, module.map(str::to_owned));
-        let (mut instructions, mut positions) = (Vec::new(), HashMap::new());
-        let (mut pulses, mut running) = (false, false);
+        let (mut instructions, mut positions, mut stations) = (Vec::new(), HashMap::new(), HashMap::new());
+        let (mut given, mut running) = (Given::Cartesian, false);
         for (i, line) in text.lines().enumerate().map(|(i, l)| (i + 1, l.trim())) {
             if line.starts_with('/') {
-                pulses = (pulses || line == "///PULSE") && line != "///RECTAN";
+                given = match line {
+                    "///PULSE" => Given::Pulses,
+                    "///ANGLE" => Given::Degrees,
+                    "///RECTAN" => Given::Cartesian,
+                    _ => given,
+                };
                 running |= line.starts_with("//INST");
             } else if running {
                 instructions.push((i, line.to_owned()));
+            } else if let Some((name, value)) = line.split_once('=').filter(|(name, _)| name.starts_with("EC")) {
+                let axes: Option<Vec<f64>> = value.split(',').map(number).collect();
+                let axes = axes.ok_or_else(|| self.trace.number_error(i, value))?;
+                stations.insert(name.trim().to_owned(), (given, axes));
             } else if let Some((name, value)) = line.split_once('=') {
-                let place = if pulses { None } else { Some(self.place(value, i)?) };
+                let place = if given == Given::Cartesian { Some(self.place(value, i)?) } else { None };
                 positions.insert(name.trim().to_owned(), place);
             }
         }
@@ -137,7 +163,7 @@ impl Reader<'_> {
             self.trace.faults.add(&BAD_NAME, None, text);
         }
         self.trace.module = caller;
-        Ok(Rc::new(Job { module: module.map(str::to_owned), instructions, positions }))
+        Ok(Rc::new(Job { module: module.map(str::to_owned), instructions, positions, stations }))
     }
 
     fn place(&self, value: &str, line: usize) -> Result<(DVec3, Stated), ReadError> {
@@ -187,7 +213,7 @@ impl Reader<'_> {
         if word.is_empty() || word.starts_with(['\'', '*']) {
             return Ok(());
         }
-        if let Some(kind) = word.strip_prefix("MOV") {
+        if let Some(kind) = word.strip_prefix('S').unwrap_or(word).strip_prefix("MOV") {
             return self.motion(kind, &words.collect::<Vec<_>>(), line, job);
         }
         let flat = compact(text);
@@ -258,10 +284,32 @@ impl Reader<'_> {
         }
     }
 
+    /// A position of the robot, on the part where a station (`+MOVJ EC00001`) has turned it.
+    fn on_part(&mut self, (at, stated): (DVec3, Stated), words: &[&str], job: &Job, line: usize) -> (DVec3, Stated) {
+        let name = words.iter().skip_while(|word| **word != "+MOVJ").nth(1);
+        let Some((given, axes)) = name.and_then(|name| job.stations.get(*name)) else { return (at, stated) };
+        let Some(Station { positioner, pulses, frame_turns }) = self.station.as_ref() else {
+            let fate = "turns a station that is not described (program.positioner, inform.station_pulses and inform.frame_turns): \
+                        positions were read as they are";
+            self.trace.note("+MOVJ", fate, line);
+            return (at, stated);
+        };
+        let scale = |k: usize| if *given == Given::Pulses { pulses[k] } else { 1.0 };
+        let angles = std::array::from_fn(|k| axes.get(k).filter(|_| k < pulses.len()).map_or(0.0, |at| at / scale(k)));
+        let (held, frame) = (positioner.held(angles), positioner.held([0.0; 2]).turn);
+        let (back, mut stated) = (held.turn.inverse(), stated);
+        (0..pulses.len()).for_each(|k| stated.axes[k] = Some(angles[k]));
+        if *frame_turns {
+            return (at, stated);
+        }
+        stated.tool = stated.tool.map(|tool| back * frame * tool);
+        (back * (frame * at - held.shift), stated)
+    }
+
     /// `MOVL C00001 V=8.0 PL=0`, with `kind` = `L`.
     fn motion(&mut self, kind: &str, words: &[&str], line: usize, job: &Job) -> Result<(), ReadError> {
         let name = words.first().copied().unwrap_or_default();
-        let position = job.positions.get(name).copied();
+        let position = job.positions.get(name).copied().map(|at| at.map(|at| self.on_part(at, words, job, line)));
         // Home positions may be in pulses: torch and arc are then off, and joints move.
         if matches!(position, Some(None)) && (kind != "J" || self.trace.arc) {
             return Err(ReadError::Pulses { place: self.trace.place(line), name: name.to_owned() });

@@ -3,7 +3,7 @@
 use super::write::YaskawaInform;
 use crate::dialect::writing::needs;
 use crate::dialect::writing::orientation::{self, Turn};
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
 use crate::program::ProgramSettings;
 use bead_plan::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
@@ -26,7 +26,7 @@ pub enum InformSpeed {
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Inform {
-    /// Number of the user frame of the part, 1 to 63.
+    /// Number of the user frame of the part, 1 to 63; with a station, see `frame_turns`.
     pub user_frame: u32,
     /// Number of the tool that is the torch, 0 to 63.
     pub tool: u32,
@@ -76,10 +76,30 @@ pub struct Inform {
     /// Number of the P variable that holds the shift of a layer, for `program.layer_offsets`; default 90.
     #[serde(default = "ninety")]
     pub offset_variable: u32,
+    /// Control group of the station that turns the part, such as `ST1`, coordinated with the robot. Needed for
+    /// `program.positioner`, `program.table_angle` and `program.table_side`.
+    #[serde(default)]
+    pub station: Option<String>,
+    /// Whether the user frame turns with the station, so that positions are on the part; if `false`, it keeps where the
+    /// part's frame is with the station at 0, and positions are where the station holds them. Needed with `station`: public
+    /// jobs do not agree, so try it with a part that stands beside the axis, without the arc.
+    #[serde(default)]
+    pub frame_turns: Option<bool>,
+    /// Pulses per degree of each of the station's axes, in the order of `program.positioner.axes`; negative where the axis
+    /// counts the other way.
+    #[serde(default)]
+    pub station_pulses: Vec<f64>,
     /// Lines at other places of the program; default none.
     #[serde(default)]
     pub hooks: Hooks,
 }
+
+/// How the controller identifies what turns the part.
+const STATION: &str = "It is the control group of the station, such as \"ST1\"; inform.station_pulses gives the pulses per degree of \
+                       its axes.";
+
+/// Fewest and most pulses per degree.
+const PULSES: std::ops::RangeInclusive<f64> = 1.0..=1e5;
 
 fn ninety() -> u32 {
     90
@@ -104,19 +124,23 @@ impl Section for Inform {
         limits
     }
 
-    fn broken(&self, _program: &ProgramSettings) -> Option<Broken> {
+    fn broken(&self, program: &ProgramSettings) -> Option<Broken> {
         let digits = |text: &str, marks: &[u8]| text.bytes().all(|b| b.is_ascii_digit() || marks.contains(&b));
-        let group = !self.group.is_empty() && self.group.bytes().all(|b| b.is_ascii_alphanumeric() || b == b',');
+        let is_group = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_alphanumeric() || b == b',');
+        let group = is_group(&self.group);
+        let station = self.station.as_deref().is_none_or(is_group);
         let date = self.date.len() == 16 && digits(&self.date, b"/ :");
         let configuration = !self.configuration.is_empty() && digits(&self.configuration, b",");
         [
-            (group, "inform.group", &self.group, "such as \"RB1\"."),
+            (group, "inform.group", self.group.as_str(), "such as \"RB1\"."),
+            (station, "inform.station", self.station.as_deref().unwrap_or_default(), "such as \"ST1\"."),
             (configuration, "inform.configuration", &self.configuration, "such as \"1,0,0,0,0,0,0,0\"."),
             (date, "inform.date", &self.date, "yyyy/mm/dd hh:mm."),
         ]
         .into_iter()
         .find(|(fits, ..)| !fits)
         .map(|(_, key, value, reason)| Broken::text(key, value, reason))
+        .or_else(|| self.broken_station(program))
     }
 
     fn templates(&self) -> Templates<'_> {
@@ -133,6 +157,10 @@ impl Section for Inform {
 
     fn supports(&self, _extra: Extra) -> bool {
         true
+    }
+
+    fn table(&self) -> Option<Table> {
+        Some(Table { key: "inform.station", known: self.station.is_some(), what: STATION })
     }
 
     fn hooks(&self) -> Option<&Hooks> {
@@ -152,5 +180,33 @@ impl Section for Inform {
         let mut section = self.clone();
         section.orientation = orientation::xyz(section.orientation, Turn::Torch(job.program.torch_angle));
         Ok(Box::new(YaskawaInform::new(job, section)))
+    }
+}
+
+impl Inform {
+    /// The first contradiction about a station that turns the part.
+    fn broken_station(&self, program: &ProgramSettings) -> Option<Broken> {
+        let (axes, pulses) = (program.turning_axes(), &self.station_pulses);
+        if self.station.is_none() || axes == 0 {
+            return None;
+        }
+        let broken = |key: &str, value: String, reason: String| Some(Broken { key: key.to_owned(), value, reason });
+        if pulses.len() != axes || pulses.iter().any(|pulses| !PULSES.contains(&pulses.abs())) {
+            let reason = format!(
+                "it needs the pulses per degree of each of the {axes} axes that turn the part, from {} to {}, with a minus sign \
+                 where an axis counts the other way.",
+                PULSES.start(),
+                PULSES.end()
+            );
+            return broken("inform.station_pulses", format!("{pulses:?}"), reason);
+        }
+        if self.frame_turns.is_none() {
+            let reason = "say whether the user frame turns with the station: true if positions are on the part, false if it stays \
+                          where it is with the station at 0."
+                .to_owned();
+            return broken("inform.frame_turns", "missing".to_owned(), reason);
+        }
+        let reason = "how a Yaskawa controller runs an arc while the station turns is unconfirmed: set it to false.";
+        program.arcs.then(|| broken("program.arcs", "true".to_owned(), reason.to_owned())).flatten()
     }
 }

@@ -4,9 +4,14 @@
 //! Every move has its own position, and NPOS counts them. Three MOVC make an arc; the first is at the arc's start, so
 //! the robot does not move for it. To the controller, consecutive MOVC are one chain, so a MOVL to the shared point
 //! separates an arc from the next.
+//!
+//! With a station under the part, robot and station move together: `SMOVL C00003 V=11.0  +MOVJ EC00003`, as a DX200
+//! exports it (rpiRobotics/dx200_motion_progam_exec, `example_inform/R1-S1-SAMPLE.JBI`). Straight on the part is
+//! then straight to the controller. Positions are on the part or in the cell, as the profile says of the user frame.
 
 use super::section::{Inform, InformSpeed};
 use crate::dialect::writing::frame::{self, Frame, Part, Piece, Skippable, Syntax};
+use crate::dialect::writing::in_cell::InCell;
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::{Chunk, Job, ascii, upper_name, waits};
 use crate::number::fixed;
@@ -31,6 +36,10 @@ pub(super) struct YaskawaInform {
     weave: Option<Weave>,
     /// Rx, Ry, Rz of the torch, °.
     orientation: [f64; 3],
+    /// Where the station holds the part, if the user frame does not turn with it.
+    in_cell: Option<InCell>,
+    /// Angles of the station, °; unused ones are ignored.
+    turned: Option<[f64; 2]>,
     main: JobText,
     at: DVec3,
     /// Whether the last move was along an arc.
@@ -43,6 +52,8 @@ pub(super) struct YaskawaInform {
 #[derive(Default)]
 pub(super) struct JobText {
     positions: String,
+    /// Positions of the station, one for each of the robot's; empty without one.
+    stations: String,
     count: usize,
     instructions: String,
     labels: usize,
@@ -65,7 +76,10 @@ impl YaskawaInform {
     /// Begins the program of a part and names the job after the part.
     pub(super) fn new(job: &Job<'_>, inform: Inform) -> Self {
         let frame = Frame::new(job, upper_name(&job.part), MAX_COMMENT, &inform);
+        let fixed = inform.frame_turns == Some(false);
         Self {
+            in_cell: fixed.then(|| InCell::new(job.program.positioner.as_ref())),
+            turned: job.program.first_angles(),
             frame: Frame { comment: ascii(&job.part), ..frame },
             orientation: inform.orientation,
             inform,
@@ -94,14 +108,35 @@ impl YaskawaInform {
         }
     }
 
-    /// Adds a position in the user frame and returns its name.
-    fn pose(&self, job: &mut JobText, to: DVec3) -> String {
-        let name = format!("C{:05}", job.count);
+    /// The control group of the station, if it turns the part.
+    fn station(&self) -> Option<&str> {
+        self.inform.station.as_deref().filter(|_| self.frame.program.has_table())
+    }
+
+    /// Adds a position in the user frame and returns its number.
+    fn pose(&self, job: &mut JobText, to: DVec3) -> usize {
+        let to = self.in_cell.map_or(to, |cell| cell.place(to));
         let [x, y, z] = to.to_array().map(|v| fixed(v, 3));
         let [rx, ry, rz] = self.orientation.map(|v| fixed(v, 4));
-        let _ = write!(job.positions, "{name}={x},{y},{z},{rx},{ry},{rz}\r\n");
+        let _ = write!(job.positions, "C{:05}={x},{y},{z},{rx},{ry},{rz}\r\n", job.count);
+        self.turn(job, self.turned);
         job.count += 1;
-        name
+        job.count - 1
+    }
+
+    /// Adds the station's position beside the robot's.
+    fn turn(&self, job: &mut JobText, angles: Option<[f64; 2]>) {
+        let Some(angles) = angles.filter(|_| self.station().is_some()) else { return };
+        let axes = angles.iter().zip(&self.inform.station_pulses).take(self.frame.program.turning_axes());
+        let pulses: Vec<String> = axes.map(|(angle, pulses)| fixed(angle * pulses, 0)).collect();
+        let _ = write!(job.stations, "EC{:05}={}\r\n", job.count, pulses.join(","));
+    }
+
+    /// A move of the joints to a position, and of the station with them.
+    fn joints(&self, position: usize, end: &str) -> String {
+        let speed = format!("VJ={}", fixed(self.inform.home_speed, 2));
+        let station = self.station().map_or(String::new(), |_| format!("  +MOVJ EC{position:05} {speed}"));
+        format!("MOVJ C{position:05} {speed}{end}{station}")
     }
 
     fn speed(&self, speed: f64) -> String {
@@ -113,8 +148,12 @@ impl YaskawaInform {
     }
 
     fn motion(&mut self, job: &mut JobText, word: &str, to: DVec3, speed: f64, level: u32) {
-        let pose = self.pose(job, to);
-        job.line(&format!("{word} {pose} {} PL={level}", self.speed(speed)));
+        let position = self.pose(job, to);
+        let (together, station) = match self.station() {
+            Some(_) => ("S", format!("  +MOVJ EC{position:05}")),
+            None => ("", String::new()),
+        };
+        job.line(&format!("{together}{word} C{position:05} {} PL={level}{station}", self.speed(speed)));
         (self.at, self.in_arc) = (to, word == "MOVC");
     }
 
@@ -129,10 +168,6 @@ impl YaskawaInform {
         }
     }
 
-    fn go_home(&self, position: usize) -> String {
-        format!("MOVJ C{position:05} VJ={}", fixed(self.inform.home_speed, 2))
-    }
-
     /// A job in the user frame.
     fn relative(&self, name: &str, comment: &str, job: &JobText) -> Chunk {
         let Inform { user_frame, tool, configuration, .. } = &self.inform;
@@ -145,10 +180,14 @@ impl YaskawaInform {
 
     fn file(&self, name: &str, comment: &str, head: &str, attributes: &str, job: &JobText) -> Chunk {
         let comment = &comment[..comment.len().min(MAX_COMMENT)];
+        let group = self.station().map_or(String::new(), |station| format!("///GROUP2 {station}\r\n"));
+        // Positions of a station are never Cartesian.
+        let pulses = if head.ends_with("///PULSE\r\n") { "" } else { "///POSTYPE PULSE\r\n///PULSE\r\n" };
+        let (pulses, stations) = if job.stations.is_empty() { ("", 0) } else { (pulses, job.count) };
         let text = format!(
-            "/JOB\r\n//NAME {name}\r\n//POS\r\n///NPOS {},0,0,0,0,0\r\n{head}{}//INST\r\n///DATE {}\r\n\
-             ///COMM {comment}\r\n///ATTR {attributes}\r\n///GROUP1 {}\r\nNOP\r\n{}END\r\n",
-            job.count, job.positions, self.inform.date, self.inform.group, job.instructions
+            "/JOB\r\n//NAME {name}\r\n//POS\r\n///NPOS {},0,{stations},0,0,0\r\n{head}{}{pulses}{}//INST\r\n\
+             ///DATE {}\r\n///COMM {comment}\r\n///ATTR {attributes}\r\n///GROUP1 {}\r\n{group}NOP\r\n{}END\r\n",
+            job.count, job.positions, job.stations, self.inform.date, self.inform.group, job.instructions
         );
         Chunk { file: format!("{name}.jbi"), text }
     }
@@ -182,9 +221,13 @@ impl Syntax for YaskawaInform {
     /// The main job is written at its end, when its number of positions is known.
     fn begin_main(&mut self) -> Vec<Chunk> {
         let pulses = self.inform.home.map(|pulse| pulse.to_string()).join(",");
-        let positions = format!("C00000={pulses}\r\nC00001={pulses}\r\n");
-        let mut main = JobText { positions, count: 2, ..JobText::default() };
-        main.line(&self.go_home(0));
+        let mut main = JobText::default();
+        for _ in 0..2 {
+            let _ = write!(main.positions, "C{:05}={pulses}\r\n", main.count);
+            self.turn(&mut main, self.frame.program.first_angles());
+            main.count += 1;
+        }
+        main.line(&self.joints(0, ""));
         self.frame.supplies.iter().for_each(|line| main.line(&format!("'{line}")));
         if self.frame.program.restart {
             main.line("'0, OR LAYER*10000+PASS");
@@ -198,7 +241,7 @@ impl Syntax for YaskawaInform {
     fn end_main(&mut self) -> Vec<Chunk> {
         let mut main = std::mem::take(&mut self.main);
         frame::end(self, &mut main);
-        main.line(&self.go_home(1));
+        main.line(&self.joints(1, ""));
         let head = format!("///TOOL {}\r\n///POSTYPE PULSE\r\n///PULSE\r\n", self.inform.tool);
         vec![self.file(&self.frame.name, &self.frame.comment, &head, "SC,RW", &main)]
     }
@@ -242,12 +285,14 @@ impl Syntax for YaskawaInform {
     }
 
     fn stand(&mut self, attitude: Attitude) {
-        self.orientation = orientation::xyz(self.inform.orientation, Turn::Attitude(attitude));
+        self.turned = attitude.held.map(|held| held.angles).or(self.turned);
+        let turn = self.in_cell.as_mut().map_or(Turn::Attitude(attitude), |cell| cell.stand(attitude));
+        self.orientation = orientation::xyz(self.inform.orientation, turn);
     }
 
     fn approach(&mut self, job: &mut JobText, to: DVec3) {
-        let pose = self.pose(job, to);
-        job.line(&format!("MOVJ {pose} VJ={} PL=0", fixed(self.inform.home_speed, 2)));
+        let position = self.pose(job, to);
+        job.line(&self.joints(position, " PL=0"));
         (self.at, self.in_arc) = (to, false);
     }
 

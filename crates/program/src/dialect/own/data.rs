@@ -8,7 +8,9 @@ use minijinja::{Error, ErrorKind, Value};
 use std::sync::Arc;
 
 /// Placeholders of the other dialects that are not values of a whole job.
-const CHANGING: [&str; 11] = [
+const CHANGING: [&str; 13] = [
+    "positioner_1",
+    "positioner_2",
     "program",
     "layer",
     "layers",

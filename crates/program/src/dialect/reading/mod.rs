@@ -25,6 +25,7 @@ pub use layers::{ReadLayer, ReadPass, ReadTotals};
 pub use trace::CHORD_MM;
 
 use super::{ALL, Dialect};
+use crate::program::Positioner;
 use bead_part::model::MAX_REACH_MM;
 use glam::DVec3;
 use std::fmt;
@@ -129,10 +130,23 @@ pub struct Options {
     /// Whether `V=` in INFORM is in cm/min instead of mm/s; controllers can be set to either, and jobs do not say
     /// which.
     pub inform_cm_per_min: bool,
+    /// The station that turns the part in INFORM.
+    pub inform_station: Option<Station>,
     /// Name of the main file on the controller.
     pub file: Option<String>,
     /// The largest KRL program or script that the controller accepts, MB.
     pub max_megabytes: Option<f64>,
+}
+
+/// A station under the part, as INFORM counts its axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Station {
+    /// Its axes; a table that turns about the part's z axis is one of them.
+    pub positioner: Positioner,
+    /// Pulses per degree of each axis.
+    pub pulses: Vec<f64>,
+    /// Whether the user frame turns with it, so that positions are on the part.
+    pub frame_turns: bool,
 }
 
 /// A line of the program, or of one of its modules.

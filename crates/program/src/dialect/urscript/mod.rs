@@ -15,7 +15,7 @@ pub const DIALECT: Dialect = Dialect {
     module_extensions: &[],
     linear_axis: false,
     table: false,
-    positioner: false,
+    positioner: true,
     typical: read::typical,
     read: read::read,
 };

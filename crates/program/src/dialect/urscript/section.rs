@@ -4,8 +4,8 @@ use super::write::UniversalScript;
 use crate::dialect::writing::needs;
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::volumes::MEGABYTE;
-use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Templates, Writer};
-use crate::program::ProgramSettings;
+use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
+use crate::program::{ProgramSettings, Turning};
 use bead_plan::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,8 @@ pub struct Urscript {
     /// Mass of the torch and what is mounted on the flange, kg, written as `set_payload`: without it the arm may stop for no
     /// reason or push where it should yield. Leave it out if the installation already has it.
     pub payload: Option<f64>,
-    /// Frame of the part in the robot's base: x, y, z in mm and rotation vector in rad.
+    /// Frame of the part in the robot's base: x, y, z in mm and rotation vector in rad; with a positioner, as its axes hold it
+    /// at 0.
     pub part_frame: [f64; 6],
     /// Axis angles before and after the program, °.
     pub home: [f64; 6],
@@ -61,6 +62,10 @@ pub struct Urscript {
     pub crater: Vec<String>,
     /// Statements at the end of the program.
     pub end: Vec<String>,
+    /// Statements that turn a positioner to `{{positioner_1}}` and `{{positioner_2}}` degrees and wait until it stands; the
+    /// torch is at home. Needed for `program.positioner`; default none.
+    #[serde(default)]
+    pub turn: Vec<String>,
     /// Lines of subprograms that the other lines call, at the head of the script; default none.
     #[serde(default)]
     pub routines: Vec<String>,
@@ -68,6 +73,10 @@ pub struct Urscript {
     #[serde(default)]
     pub hooks: Hooks,
 }
+
+/// How the controller moves what turns the part.
+const TURN: &str = "They are the statements that turn the positioner to {{positioner_1}} and {{positioner_2}} degrees and wait until it \
+                    stands, such as a call of your routine.";
 
 fn two() -> f64 {
     2.0
@@ -94,8 +103,18 @@ impl Section for Urscript {
         limits
     }
 
-    fn broken(&self, _program: &ProgramSettings) -> Option<Broken> {
-        None
+    fn broken(&self, program: &ProgramSettings) -> Option<Broken> {
+        let together = program.positioner.as_ref().is_some_and(|own| own.turning != Turning::IndexAtHome);
+        let reason = "URScript does not move the axes with the torch (urscript.turn): set it to \"index-at-home\".";
+        (together && !self.turn.is_empty()).then(|| Broken {
+            key: "program.positioner.turning".to_owned(),
+            value: "with the torch".to_owned(),
+            reason: reason.to_owned(),
+        })
+    }
+
+    fn table(&self) -> Option<Table> {
+        Some(Table { key: "urscript.turn", known: !self.turn.is_empty(), what: TURN })
     }
 
     fn templates(&self) -> Templates<'_> {
@@ -107,6 +126,7 @@ impl Section for Urscript {
             ("urscript.wire_feed", &self.wire_feed),
             ("urscript.crater", &self.crater),
             ("urscript.end", &self.end),
+            ("urscript.turn", &self.turn),
             ("urscript.routines", &self.routines),
         ]
     }

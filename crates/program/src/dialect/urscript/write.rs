@@ -2,7 +2,8 @@
 //!
 //! Lengths are in metres and angles in radians. Poses are given in the part's frame; `pose_trans` transforms them to
 //! the robot's base. Moves of a pass are blended, by less than half the length of the shorter of two neighbours, but
-//! not where the arc is switched. Lines end with a line feed alone, as on the controller, which runs Linux.
+//! not where the arc is switched. Before a positioner turns the part, the torch goes home, and the part's frame is set
+//! anew. Lines end with a line feed alone, as on the controller, which runs Linux.
 
 use super::section::Urscript;
 use crate::dialect::writing::frame::{self, Frame, Part, Piece, Skippable, Syntax};
@@ -10,9 +11,9 @@ use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::writing::volumes::Volumes;
 use crate::dialect::writing::{Chunk, Job, restart, upper_name};
 use crate::number::{fixed, push_fixed};
-use crate::program::{Attitude, Instruction};
+use crate::program::{Attitude, Held, Instruction};
 use bead_plan::pass::PassKind;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// Words of the language and names of its functions after which a part might happen to be named.
 const RESERVED: &str = "\
@@ -42,6 +43,12 @@ pub(super) struct UniversalScript {
     urscript: Urscript,
     /// Rotation vector of the torch, rad.
     orientation: [f64; 3],
+    /// How the positioner is to hold the part.
+    held: Option<Held>,
+    /// Its angles as last written, °.
+    turned: Option<[f64; 2]>,
+    /// Index of the current layer.
+    layer: usize,
     /// Names of the layers' functions in the current volume.
     functions: Vec<String>,
     at: Option<DVec3>,
@@ -71,7 +78,8 @@ impl UniversalScript {
         let volumes = Some(Volumes::new(urscript.max_megabytes, "URScript", "script"));
         let frame = Frame { volumes, ..Frame::new(job, name, MAX_COMMENT, &urscript) };
         let orientation = urscript.orientation;
-        Self { frame, urscript, orientation, functions: Vec::new(), at: None }
+        let functions = Vec::new();
+        Self { frame, urscript, orientation, held: None, turned: None, layer: 0, functions, at: None }
     }
 
     fn home(&self, main: &mut Function) {
@@ -105,6 +113,39 @@ impl UniversalScript {
             push_fixed(text, (blend * 1000.0).floor() / 1e6, 6);
         }
         text.push_str(if via.is_some() { ", mode=0)\n" } else { ")\n" });
+    }
+
+    /// Turns the part, with the torch at home, if it is not yet held as required.
+    fn turn(&mut self, function: &mut Function) {
+        let Some(held) = self.held.filter(|held| self.turned != Some(held.angles)) else { return };
+        self.home(function);
+        self.turn_to(held, function);
+        self.turned = Some(held.angles);
+    }
+
+    fn turn_to(&mut self, held: Held, function: &mut Function) {
+        let [first, second] = held.angles.map(|angle| fixed(angle, 4));
+        self.frame.values.set("positioner_1", first);
+        self.frame.values.set("positioner_2", second);
+        self.frame.values.expand(&self.urscript.turn).for_each(|line| function.line(&line));
+        let frame = frame_text(&self.part_frame(held));
+        if self.frame.program.layer_offsets {
+            function.line(&format!("global place = {frame}"));
+            function.line(&format!("global part_frame = lifted(layer_dz[{}])", self.layer));
+        } else {
+            function.line(&format!("global part_frame = {frame}"));
+        }
+    }
+
+    /// The frame of the part in the robot's base, mm and rad, as the positioner holds it.
+    fn part_frame(&self, held: Held) -> [f64; 6] {
+        let [x, y, z, rx, ry, rz] = self.urscript.part_frame;
+        let (at, stands) = (DVec3::new(x, y, z), DQuat::from_scaled_axis(DVec3::new(rx, ry, rz)));
+        let Some(positioner) = &self.frame.program.positioner else { return self.urscript.part_frame };
+        let at_zero = positioner.held([0.0; 2]).turn.inverse();
+        let (at, turn) = (at + stands * at_zero * held.shift, (stands * at_zero * held.turn).normalize());
+        let turn = (if turn.w < 0.0 { -turn } else { turn }).to_scaled_axis();
+        [at.x, at.y, at.z, turn.x, turn.y, turn.z]
     }
 
     /// The blend at the end of a move, mm; `next` is the move after it, if there is one without a stop between.
@@ -168,6 +209,7 @@ impl Syntax for UniversalScript {
     /// The functions of the layers follow, inside the program.
     fn begin_main(&mut self) -> Vec<Chunk> {
         self.functions.clear();
+        self.turned = None;
         let mut main = Function { text: format!("def {}():\n", self.frame.main), indent: "  " };
         self.head(&mut main);
         frame::routines(self, &mut main);
@@ -182,6 +224,9 @@ impl Syntax for UniversalScript {
         self.functions.iter().for_each(|name| main.line(&format!("{name}()")));
         frame::end(self, &mut main);
         self.home(&mut main);
+        if let Some(at_zero) = self.frame.program.positioner.as_ref().map(|own| own.held([0.0; 2])) {
+            self.turn_to(at_zero, &mut main);
+        }
         main.text.push_str("end\n");
         if self.urscript.call {
             main.text.push_str(&format!("{}()\n", self.frame.main));
@@ -196,6 +241,7 @@ impl Syntax for UniversalScript {
     fn part(&mut self, part: &Part, moves: &[Instruction]) -> Vec<Chunk> {
         let mut function = Function { text: format!("  def {}():\n", self.name_of(part)), indent: "    " };
         function.text.reserve(moves.len() * 120);
+        self.layer = part.layer;
         function.line(&format!("# layer {}, z {} mm", part.layer + 1, fixed(part.z, 3)));
         if self.frame.program.layer_offsets {
             function.line(&format!("global part_frame = lifted(layer_dz[{}])", part.layer));
@@ -225,16 +271,21 @@ impl Syntax for UniversalScript {
 
     fn begin_way(&mut self, function: &mut Function, _number: usize, above: DVec3) {
         function.line(&format!("if {START} > 0:"));
+        // How the part was turned before is unknown there, but known on the other path.
+        let turned = self.turned.take();
         self.approach(function, above);
+        self.turned = turned;
         function.line(&format!("global {START} = 0"));
         function.line("else:");
     }
 
     fn stand(&mut self, attitude: Attitude) {
+        self.held = attitude.held.or(self.held);
         self.orientation = orientation::vector(self.urscript.orientation, Turn::Attitude(attitude));
     }
 
     fn approach(&mut self, function: &mut Function, to: DVec3) {
+        self.turn(function);
         let mut text = "movej(".to_owned();
         self.pose(&mut text, to);
         text.push_str(&format!(", a=1.400000, v={})", fixed(self.urscript.home_speed.to_radians(), 6)));

@@ -5,6 +5,7 @@
 mod extra;
 pub(super) mod frame;
 mod hooks;
+pub(in crate::dialect) mod in_cell;
 mod names;
 pub(super) mod needs;
 pub(super) mod orientation;

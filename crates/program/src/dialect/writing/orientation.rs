@@ -14,6 +14,8 @@ pub(in crate::dialect) enum Turn {
     Torch(f64),
     /// As required by a move.
     Attitude(Attitude),
+    /// About the axes of the frame.
+    By(DQuat),
 }
 
 impl Turn {
@@ -21,6 +23,7 @@ impl Turn {
         match self {
             Self::Torch(angle) => angle == 0.0,
             Self::Attitude(attitude) => attitude.is_upright(),
+            Self::By(rotation) => rotation == DQuat::IDENTITY,
         }
     }
 
@@ -28,6 +31,7 @@ impl Turn {
         let turned = match self {
             Self::Torch(angle) => orientation * DQuat::from_rotation_z(-angle.to_radians()),
             Self::Attitude(attitude) => attitude.rotation() * orientation,
+            Self::By(rotation) => rotation * orientation,
         };
         turned.normalize()
     }

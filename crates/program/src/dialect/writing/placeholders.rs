@@ -11,7 +11,7 @@ use bead_plan::weld::retract_time;
 pub(super) type Placeholder = (&'static str, fn(&Job<'_>) -> String);
 
 /// All placeholders. Those of the part, the layer, the pass, waits and the wire feed change as the program proceeds.
-pub const PLACEHOLDERS: [Placeholder; 30] = [
+pub const PLACEHOLDERS: [Placeholder; 32] = [
     ("program", |job| job.part.clone()),
     ("layer", |_| String::new()),
     ("pass", |_| String::new()),
@@ -35,6 +35,8 @@ pub const PLACEHOLDERS: [Placeholder; 30] = [
     ("arc_end_delay_ms", |job| milliseconds(job.weld.process.arc_end_delay)),
     ("gas_preflow_ms", |job| milliseconds(job.weld.process.gas_preflow)),
     ("gas_postflow_ms", |job| milliseconds(job.weld.process.gas_postflow)),
+    ("positioner_1", |_| fixed(0.0, 4)),
+    ("positioner_2", |_| fixed(0.0, 4)),
     ("dwell", |_| "0".to_owned()),
     ("dwell_ms", |_| "0".to_owned()),
     ("wire_feed", |job| fixed(job.weld.process.wire_feed_speed, 3)),
