@@ -1,9 +1,9 @@
 //! What a scan of a damaged part lacks, and the metal for it.
 
-use beadwright::chart::Chart;
-use beadwright::damage::{Damage, DamageError, Reason, Repair, Settings, repair};
-use beadwright::model::Mesh;
-use beadwright::task::Task;
+use bead_part::chart::Chart;
+use bead_part::damage::{Damage, DamageError, Reason, Repair, Settings, repair};
+use bead_part::model::Mesh;
+use bead_part::task::Task;
 use glam::{DQuat, DVec2, DVec3};
 
 const SIZE: DVec2 = DVec2::new(160.0, 110.0);
