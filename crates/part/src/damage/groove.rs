@@ -4,6 +4,7 @@
 //! the part, so that no wall beside the damage is milled. Layers follow a floor that is flat enough; otherwise they are level.
 
 use super::found::Found;
+use super::mouth::{self, Face};
 use super::{Reason, Settings, Unfilled};
 use crate::chart::surface::{self, Grid};
 use crate::chart::warp::{self, WarpError};
@@ -81,11 +82,12 @@ impl Groove {
         settings: Settings,
     ) -> Result<Self, Unfilled> {
         let Settings { step, tolerance, bead, .. } = settings;
-        let seen = || found.points.iter().map(|p| surface::seen(up, *p).truncate());
-        let margin = found.depth / shape.rise() + bead + (BESIDE + 1) as f64 * step;
-        let low = seen().fold(DVec2::INFINITY, DVec2::min) - margin;
-        let high = seen().fold(DVec2::NEG_INFINITY, DVec2::max) + margin;
-        let grid = Grid::over(up, step, low, high)?;
+        let seen = || found.corners().map(|p| surface::seen(up, *p).truncate());
+        let beside = bead + (BESIDE + 1) as f64 * step;
+        let (low, high) = bounds(seen());
+        let (first, last) = bounds(part.vertices.iter().map(|p| surface::seen(up, *p).truncate()));
+        let margin = found.depth / shape.rise() + beside;
+        let grid = Grid::over(up, step, (low - margin).max(first - beside), (high + margin).min(last + beside))?;
         let is_floor = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).normalize_or_zero().dot(up) > SIDE;
         let (top, floors) = (grid.tops(part), grid.tops(&base.only(is_floor)));
         // A side begins where the part does.
@@ -120,7 +122,7 @@ impl Groove {
             let around = neighbours(&self.grid, k).map(|(n, _)| n).chain([k]).filter_map(|k| self.ground[k]);
             around.fold(f64::INFINITY, f64::min) > seen.z + tolerance
         };
-        2 * found.points.iter().filter(over).count() > found.points.len()
+        2 * found.points().filter(over).count() > found.points().count()
     }
 
     /// What is welded, seen along the direction, mm: no narrower than a bead.
@@ -187,13 +189,17 @@ impl Groove {
         Ok(metal)
     }
 
-    /// The fraction of a place that no metal covers.
+    /// The fraction of a place that no metal covers: of its mouth, seen along the direction, or of the scan's faces if that is not seen.
     pub(super) fn bare(&self, found: &Found, polygons: &[Polygon]) -> f64 {
-        let is_bare = |p: &&DVec3| {
-            let place = self.grid.seen(**p).truncate();
+        let is_bare = |face: &&Face| {
+            let place = self.grid.seen(mouth::middle(face)).truncate();
             !polygons.iter().any(|polygon| polygon.contains(place))
         };
-        found.points.iter().filter(is_bare).count() as f64 / found.points.len() as f64
+        let faces: Vec<&Face> = facing(&found.mouth, self.up).collect();
+        let faces = if faces.is_empty() { found.faces.iter().collect() } else { faces };
+        let area = |face: &Face| mouth::vector(face).dot(self.up).abs();
+        let bare: f64 = faces.iter().copied().filter(is_bare).map(area).sum();
+        bare / faces.into_iter().map(area).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
     /// The damaged part with the groove milled, and how much is milled off, mm³.
@@ -277,6 +283,15 @@ fn nearest(grid: &Grid, p: DVec2) -> Option<usize> {
     let at = ((p - grid.from) / grid.step).round();
     let is_on_it = at.cmpge(DVec2::ZERO).all() && at.x < grid.columns as f64 && at.y < grid.rows as f64;
     is_on_it.then(|| at.y as usize * grid.columns + at.x as usize)
+}
+
+fn bounds(places: impl Iterator<Item = DVec2>) -> (DVec2, DVec2) {
+    places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+}
+
+/// Those of some faces that are seen along a direction.
+fn facing(faces: &[Face], up: DVec3) -> impl Iterator<Item = &Face> {
+    faces.iter().filter(move |face| mouth::vector(face).normalize_or_zero().dot(up) > FACING)
 }
 
 /// Where a grid lies within two steps of places, which are no farther apart than that.

@@ -6,13 +6,14 @@
 
 mod found;
 mod groove;
+mod mouth;
 
 use crate::chart::warp::WarpError;
 use crate::chart::{Chart, SurfaceError};
 use crate::deviation;
 use crate::model::Mesh;
 use crate::task::{Cancelled, Task};
-use found::Found;
+use found::{Found, Known};
 use glam::DVec3;
 use groove::{Groove, Shape};
 use planar::{Join, Polygon, Region};
@@ -52,9 +53,9 @@ pub struct Damage {
     pub chart: Chart,
     /// Direction along which they are stacked.
     pub up: DVec3,
-    /// Its deepest place, on the scan, mm.
+    /// Its middle, on the part's surface, mm.
     pub place: DVec3,
-    /// How far the scan lies inside the part there, mm.
+    /// How far the scan lies under the part's surface where that is missing, mm.
     pub depth: f64,
     /// What is missing of the part, mm³.
     pub missing: f64,
@@ -67,9 +68,9 @@ pub struct Damage {
 /// A damaged place that is not welded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Left {
-    /// Its deepest place, on the scan, mm.
+    /// Its middle, on the part's surface, mm.
     pub place: DVec3,
-    /// How far the scan lies inside the part there, mm.
+    /// How far the scan lies under the part's surface where that is missing, mm.
     pub depth: f64,
     /// The direction along which it was to be welded.
     pub up: DVec3,
@@ -157,13 +158,13 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
     if scan.triangles.is_empty() {
         return Err(DamageError::NoFaces);
     }
-    let found = found::all(&surface, part, scan, settings, task)?;
+    let Known { places: found, .. } = found::all(&surface, part, scan, settings, task)?;
     let fill = |found| Place::filled(found, part, scan, settings, task);
     let mut places = found.into_iter().map(fill).collect::<Result<Vec<_>, _>>()?;
     while let Some([a, b]) = meeting(&places, settings.bead) {
         let other = places.swap_remove(b).found;
         let one = places.swap_remove(a).found;
-        places.push(fill(one.and(other))?);
+        places.push(fill(one.and(other, &surface))?);
     }
     let mut repair = Repair { base: scan.clone(), ..Repair::default() };
     for Place { found, metal } in places {

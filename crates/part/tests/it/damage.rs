@@ -201,3 +201,44 @@ fn damage_that_cannot_be_welded_is_said() {
     task.cancel();
     assert!(matches!(repair(&part, &scan, SETTINGS, &task), Err(DamageError::Cancelled(_))));
 }
+
+/// Where a place on the block lies once it is turned.
+fn at_any_angle(mut check: impl FnMut(DQuat)) {
+    let steep = DQuat::from_euler(glam::EulerRot::XYZ, 2.1, -0.7, 0.4);
+    [DQuat::IDENTITY, DQuat::from_rotation_y(1.1), steep].into_iter().for_each(&mut check);
+}
+
+/// A pocket of 40 × 30 mm in the middle of the block, so deep, mm.
+fn pocket(p: DVec2, depth: f64) -> f64 {
+    if (p.x - 80.0).abs() < 20.0 && (p.y - 55.0).abs() < 15.0 { TOP - depth } else { TOP }
+}
+
+#[test]
+fn a_pocket_is_open_where_the_surface_is_missing_however_thin_its_floor_is() {
+    let part = block(10.0, |_| TOP);
+    at_any_angle(|turn| {
+        for depth in [6.0, 25.0, 37.0] {
+            let scan = block(1.0, |p| pocket(p, depth));
+            let repair = found(&turned(&part, turn), &turned(&scan, turn));
+            let damage = only(&repair);
+            assert!(damage.up.dot(turn * DVec3::Z) > 0.999, "{depth} mm deep: along {}", turn.conjugate() * damage.up);
+            assert!((damage.depth - depth).abs() < 0.1, "{} of {depth} mm", damage.depth);
+            let missing = part.volume() - scan.volume();
+            assert!((0.95..1.05).contains(&(damage.missing / missing)), "{} of {missing} mm³", damage.missing);
+        }
+    });
+}
+
+#[test]
+fn a_place_is_named_by_its_middle_on_the_surface_of_the_part() {
+    let part = block(10.0, |_| TOP);
+    at_any_angle(|turn| {
+        // A dish whose deepest place is far from its middle, and a pocket.
+        let leaning = |p: DVec2| if pocket(p, 1.0) < TOP { TOP - 3.0 - 0.1 * (p.x - 60.0) } else { TOP };
+        for scan in [block(1.0, leaning), block(1.0, |p| pocket(p, 30.0))] {
+            let repair = found(&turned(&part, turn), &turned(&scan, turn));
+            let off = turn.conjugate() * only(&repair).place - DVec3::new(80.0, 55.0, TOP);
+            assert!(off.length() < 2.0 && off.z.abs() < 1e-6, "{off}");
+        }
+    });
+}
