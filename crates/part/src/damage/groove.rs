@@ -8,7 +8,7 @@ use super::mouth::{self, Face};
 use super::{Reason, Settings, Unfilled};
 use crate::chart::surface::{self, Grid};
 use crate::chart::warp::{self, WarpError};
-use crate::chart::{Chart, Plane, Surface};
+use crate::chart::{Chart, Plane, Surface, SurfaceError};
 use crate::model::Mesh;
 use crate::model::solid::Solid;
 use crate::task::Task;
@@ -34,6 +34,9 @@ const TOLERANCE: f64 = 0.02;
 const FACING: f64 = 0.05;
 /// Faces of the damaged part that lean more than 75° are sides of the damage or of the part, and no floor: the cosine of that.
 const SIDE: f64 = 0.26;
+
+/// Faces of the damaged part that lean more are upright: the cosine.
+const UPRIGHT: f64 = 1e-3;
 
 /// How a groove is shaped and filled.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,10 +96,11 @@ impl Groove {
         // A side begins where the part does.
         let side: Vec<bool> = floors.iter().map(Option::is_none).collect();
         let ground: Vec<Option<f64>> = floors.into_iter().zip(&top).map(|(floor, top)| floor.or(*top)).collect();
+        // What backs a hole lies outside the part, so that it is no damaged place, but it lies under the mouth.
         let near = near(&grid, seen());
         let is_deep = |k: usize| near[k] && matches!((top[k], ground[k]), (Some(t), Some(g)) if t - g > tolerance);
-        let mut dug =
-            Dug { grid: &grid, top: &top, floor: ground.clone(), open: (0..top.len()).map(is_deep).collect() };
+        let (open, void) = ((0..top.len()).map(is_deep).collect(), void(&grid, &top, base, bead));
+        let mut dug = Dug { grid: &grid, top: &top, void: &void, floor: ground.clone(), open };
         if matches!(shape, Shape::Level(_)) {
             dug.widen(bead / 2.0);
         }
@@ -294,6 +298,47 @@ fn facing(faces: &[Face], up: DVec3) -> impl Iterator<Item = &Face> {
     faces.iter().filter(move |face| mouth::vector(face).normalize_or_zero().dot(up) > FACING)
 }
 
+/// Those missing faces of the part, seen along a direction, under which the damaged part has no face that is seen as well.
+pub(super) fn bottomless(
+    found: &Found,
+    part: &Mesh,
+    base: &Mesh,
+    up: DVec3,
+    settings: Settings,
+) -> Result<Vec<Face>, SurfaceError> {
+    let (low, high) = bounds(found.corners().map(|p| surface::seen(up, *p).truncate()));
+    let grid = Grid::over(up, settings.step, low, high)?;
+    let void = void(&grid, &grid.tops(part), base, settings.bead);
+    let is_void = |face: &&Face| nearest(&grid, grid.seen(mouth::middle(face)).truncate()).is_some_and(|k| void[k]);
+    Ok(facing(&found.mouth, up).filter(is_void).copied().collect())
+}
+
+/// Where the part lies on a grid, but nothing of the damaged part, over more than a small gap of the scan: a quarter of a bead's square, mm.
+fn void(grid: &Grid, top: &[Option<f64>], base: &Mesh, bead: f64) -> Vec<bool> {
+    let faces_up = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).normalize_or_zero().dot(grid.up()) > UPRIGHT;
+    let floors = grid.tops(&base.only(faces_up));
+    let empty: Vec<bool> = floors.iter().zip(top).map(|(floor, top)| floor.is_none() && top.is_some()).collect();
+    let (mut void, mut seen) = (vec![false; empty.len()], vec![false; empty.len()]);
+    for first in (0..empty.len()).filter(|k| empty[*k]) {
+        if std::mem::replace(&mut seen[first], true) {
+            continue;
+        }
+        let (mut region, mut next) = (vec![first], 0);
+        while let Some(k) = region.get(next).copied() {
+            next += 1;
+            for (n, _) in neighbours(grid, k).filter(|(n, _)| empty[*n]) {
+                if !std::mem::replace(&mut seen[n], true) {
+                    region.push(n);
+                }
+            }
+        }
+        if region.len() as f64 * grid.step * grid.step > bead * bead / 4.0 {
+            region.into_iter().for_each(|k| void[k] = true);
+        }
+    }
+    void
+}
+
 /// Where a grid lies within two steps of places, which are no farther apart than that.
 fn near(grid: &Grid, places: impl Iterator<Item = DVec2>) -> Vec<bool> {
     let mut near = vec![false; grid.columns * grid.rows];
@@ -310,12 +355,19 @@ struct Dug<'a> {
     grid: &'a Grid,
     /// The part.
     top: &'a [Option<f64>],
+    /// Where it is not known that there is metal under it, so that nothing is dug.
+    void: &'a [bool],
     floor: Vec<Option<f64>>,
     /// Whether metal is missing or milled.
     open: Vec<bool>,
 }
 
 impl Dug<'_> {
+    /// Whether a groove may reach from one place to another.
+    fn is_beside(&self, from: usize, to: usize, away: f64) -> bool {
+        is_even(self.top, from, to, away) && !self.void[to]
+    }
+
     /// Makes the floor as low within a radius (mm) of each open place as it is there.
     fn widen(&mut self, radius: f64) {
         let steps = (radius / self.grid.step).ceil() as isize;
@@ -325,7 +377,7 @@ impl Dug<'_> {
         for k in (0..before.len()).filter(|k| self.open[*k]).collect::<Vec<_>>() {
             let Some(low) = before[k] else { continue };
             for (n, away) in ways.iter().filter_map(|way| beyond(self.grid, k, *way)) {
-                if is_even(self.top, k, n, away) && self.floor[n].is_some_and(|floor| floor > low) {
+                if self.is_beside(k, n, away) && self.floor[n].is_some_and(|floor| floor > low) {
                     (self.floor[n], self.open[n]) = (Some(low), true);
                 }
             }
@@ -341,7 +393,7 @@ impl Dug<'_> {
                 let Some(low) = self.floor[k].filter(|_| self.open[k]) else { continue };
                 for (n, away) in neighbours(self.grid, k) {
                     let highest = low + rise * away;
-                    if is_even(self.top, k, n, away) && self.floor[n].is_some_and(|floor| floor > highest + LEAST) {
+                    if self.is_beside(k, n, away) && self.floor[n].is_some_and(|floor| floor > highest + LEAST) {
                         (self.floor[n], self.open[n], changed) = (Some(highest), true, true);
                     }
                 }

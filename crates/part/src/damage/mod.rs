@@ -16,6 +16,7 @@ use crate::task::{Cancelled, Task};
 use found::{Found, Known};
 use glam::DVec3;
 use groove::{Groove, Shape};
+pub use mouth::Stretch;
 use planar::{Join, Polygon, Region};
 
 /// What counts as damage, and how it is welded; lengths in mm.
@@ -87,6 +88,12 @@ pub enum Reason {
     /// Something of the damaged part lies over it, or it has no floor.
     #[error("along that direction it lies under metal, or nothing lies under it")]
     Hidden,
+    /// It goes right through the part.
+    #[error("it goes right through the part, so along that direction nothing lies under it")]
+    Through,
+    /// The scan shows its sides only.
+    #[error("the scan does not show its floor")]
+    Unseen,
     /// Layers cannot follow the part.
     #[error("along that direction the surface is too steep")]
     Steep,
@@ -99,6 +106,11 @@ pub struct Repair {
     pub damages: Vec<Damage>,
     /// What is not, the deepest first.
     pub left: Vec<Left>,
+    /// Stretches of the part's surface under which damage goes right through the part, so that they stay bare; the largest first.
+    pub through: Vec<Stretch>,
+    /// Stretches of the part's surface of which the scan shows neither that they are there nor that they are missing, nor how deep damage
+    /// is under them; the largest first.
+    pub unseen: Vec<Stretch>,
     /// The damaged part once its grooves are milled, mm.
     pub base: Mesh,
 }
@@ -158,7 +170,7 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
     if scan.triangles.is_empty() {
         return Err(DamageError::NoFaces);
     }
-    let Known { places: found, .. } = found::all(&surface, part, scan, settings, task)?;
+    let Known { places: found, unseen } = found::all(&surface, part, scan, settings, task)?;
     let fill = |found| Place::filled(found, part, scan, settings, task);
     let mut places = found.into_iter().map(fill).collect::<Result<Vec<_>, _>>()?;
     while let Some([a, b]) = meeting(&places, settings.bead) {
@@ -166,14 +178,20 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
         let one = places.swap_remove(a).found;
         places.push(fill(one.and(other, &surface))?);
     }
-    let mut repair = Repair { base: scan.clone(), ..Repair::default() };
-    for Place { found, metal } in places {
+    let mut repair = Repair { base: scan.clone(), unseen, ..Repair::default() };
+    for Place { found, metal, bottomless } in places {
+        match &bottomless {
+            Some(Bottomless::Through(stretch)) => repair.through.push(*stretch),
+            Some(Bottomless::Unseen(stretch)) => repair.unseen.push(*stretch),
+            None => {}
+        }
         match metal {
             Ok(Metal { groove, polygons, damage }) => {
                 (repair.base, _) = groove.milled(&repair.base, &polygons, settings, task).map_err(cancelled)?;
                 repair.damages.push(damage);
             }
             Err(reason) => {
+                let reason = bottomless.filter(|_| reason == Reason::Hidden).map_or(reason, |why| why.reason());
                 let up = settings.up.unwrap_or(found.open);
                 repair.left.push(Left { place: found.place, depth: found.depth, up, reason });
             }
@@ -181,6 +199,8 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
     }
     repair.damages.sort_by(|a, b| b.missing.total_cmp(&a.missing));
     repair.left.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+    repair.through.sort_by(|a, b| b.area.total_cmp(&a.area));
+    repair.unseen.sort_by(|a, b| b.area.total_cmp(&a.area));
     Ok(repair)
 }
 
@@ -188,6 +208,35 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
 struct Place {
     found: Found,
     metal: Result<Metal, Reason>,
+    bottomless: Option<Bottomless>,
+}
+
+/// Why nothing lies under a stretch of the part's surface.
+#[derive(Clone, Copy)]
+enum Bottomless {
+    /// The damage goes right through the part.
+    Through(Stretch),
+    /// The scan has a gap there.
+    Unseen(Stretch),
+}
+
+impl Bottomless {
+    /// `None` if less than a bead lacks a floor.
+    fn of(found: &Found, part: &Mesh, scan: &Mesh, settings: Settings) -> Result<Option<Self>, SurfaceError> {
+        let up = settings.up.unwrap_or(found.open);
+        let faces = groove::bottomless(found, part, scan, up, settings)?;
+        let stretch = Stretch::of(&faces).filter(|stretch| stretch.area > settings.bead * settings.bead / 4.0);
+        // A scan that ends inside the part does not show that there is nothing.
+        let has_gap = found.ends > settings.bead;
+        Ok(stretch.map(|stretch| if has_gap { Self::Unseen(stretch) } else { Self::Through(stretch) }))
+    }
+
+    fn reason(self) -> Reason {
+        match self {
+            Self::Through(_) => Reason::Through,
+            Self::Unseen(_) => Reason::Unseen,
+        }
+    }
 }
 
 struct Metal {
@@ -199,9 +248,10 @@ struct Metal {
 
 impl Place {
     fn filled(found: Found, part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Result<Self, DamageError> {
+        let bottomless = Bottomless::of(&found, part, scan, settings)?;
         match Metal::of(&found, part, scan, settings, task) {
-            Ok(metal) => Ok(Self { found, metal: Ok(metal) }),
-            Err(Unfilled::Left(reason)) => Ok(Self { found, metal: Err(reason) }),
+            Ok(metal) => Ok(Self { found, metal: Ok(metal), bottomless }),
+            Err(Unfilled::Left(reason)) => Ok(Self { found, metal: Err(reason), bottomless }),
             Err(Unfilled::Error(error)) => Err(error),
         }
     }

@@ -242,3 +242,100 @@ fn a_place_is_named_by_its_middle_on_the_surface_of_the_part() {
         }
     });
 }
+
+/// The faces of a mesh whose middle is kept.
+fn only_where(mesh: &Mesh, kept: impl Fn(DVec3) -> bool) -> Mesh {
+    let middle = |corners: &[u32; 3]| corners.iter().map(|corner| mesh.vertices[*corner as usize]).sum::<DVec3>() / 3.0;
+    let triangles = mesh.triangles.iter().copied().filter(|corners| kept(middle(corners))).collect();
+    Mesh::from_triangles(mesh.vertices.clone(), triangles).0
+}
+
+/// The block with a square hole through its middle, 24 mm wide below and this much above.
+fn holed(above: f64) -> Mesh {
+    let square = |middle: DVec2, half: DVec2, z: f64| {
+        [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|way| (middle + DVec2::from(way) * half).extend(z))
+    };
+    let middle = SIZE / 2.0;
+    let rings = [(SIZE / 2.0, 0.0), (SIZE / 2.0, TOP), (DVec2::splat(above / 2.0), TOP), (DVec2::splat(12.0), 0.0)];
+    let vertices: Vec<DVec3> = rings.iter().flat_map(|(half, z)| square(middle, *half, *z)).collect();
+    let mut triangles = Vec::new();
+    for (ring, k) in (0..4_u32).flat_map(|ring| (0..4_u32).map(move |k| (ring, k))) {
+        let [a, b] = [k, (k + 1) % 4].map(|k| 4 * ring + k);
+        let [c, d] = [b, a].map(|corner| (corner + 4) % 16);
+        triangles.extend([[a, b, c], [a, c, d]]);
+    }
+    let (mesh, report) = Mesh::from_triangles(vertices, triangles);
+    assert_eq!((report.open_edges, report.flipped), (0, 0));
+    mesh
+}
+
+#[test]
+fn damage_right_through_the_part_is_said_and_stays_bare() {
+    let part = block(10.0, |_| TOP);
+    at_any_angle(|turn| {
+        // Straight, it has no floor at all; wider above, its sides are welded and its middle stays bare.
+        for above in [24.0, 90.0] {
+            let repair = found(&turned(&part, turn), &turned(&holed(above), turn));
+            let [hole] = &repair.through[..] else { panic!("{above}: {} holes", repair.through.len()) };
+            assert!((400.0..620.0).contains(&hole.area), "{above}: {} of 576 mm²", hole.area);
+            assert!((28.0..37.0).contains(&hole.across), "{above}: {} mm across", hole.across);
+            let place = turn.conjugate() * hole.place;
+            assert!(place.truncate().distance(SIZE / 2.0) < 2.0, "{above}: at {place}");
+            assert!(repair.unseen.is_empty());
+            if above == 24.0 {
+                assert!(repair.damages.is_empty() && repair.left[0].reason == Reason::Through, "{:?}", repair.left);
+                assert!((repair.left[0].depth - TOP / 2.0).abs() < 1.0, "{}", repair.left[0].depth);
+            } else {
+                let damage = only(&repair);
+                assert!((0.05..0.12).contains(&damage.bare), "{} of 576 / 8100", damage.bare);
+                let metal = turned(&damage.mesh, turn.conjugate());
+                assert_eq!(column(&metal, SIZE / 2.0), None, "metal over nothing");
+                assert!(column(&metal, SIZE / 2.0 + 20.0).is_some());
+            }
+        }
+    });
+}
+
+#[test]
+fn a_hole_is_filled_once_it_is_backed() {
+    let part = block(10.0, |_| TOP);
+    at_any_angle(|turn| {
+        // The scan shows the backing, on which metal is welded.
+        let scan = block(1.0, |p| pocket(p, TOP - 0.1));
+        let repair = found(&turned(&part, turn), &turned(&scan, turn));
+        let damage = only(&repair);
+        let missing = part.volume() - scan.volume();
+        assert!(repair.through.is_empty() && damage.bare < 0.05, "{}", damage.bare);
+        assert!((0.95..1.05).contains(&(damage.missing / missing)), "{} of {missing} mm³", damage.missing);
+    });
+}
+
+#[test]
+fn what_the_scan_does_not_show_is_neither_damage_nor_sound() {
+    let part = block(10.0, |_| TOP);
+    let is_near = |p: DVec3, at: DVec2, half: f64| (p.truncate() - at).abs().max_element() < half;
+    at_any_angle(|turn| {
+        let ask = |scan: &Mesh| found(&turned(&part, turn), &turned(scan, turn));
+        let off = |place: DVec3, at: DVec3| (turn.conjugate() * place).distance(at);
+        // Sound surface of 20 × 20 mm that was not scanned, a worn dish's middle, and the underside.
+        let gap = only_where(&block(1.0, |_| TOP), |p| p.z < 1.0 || !is_near(p, DVec2::new(40.0, 30.0), 10.0));
+        let repair = ask(&gap);
+        let [unseen] = &repair.unseen[..] else { panic!("{} gaps", repair.unseen.len()) };
+        assert!(repair.damages.is_empty() && repair.left.is_empty() && repair.through.is_empty());
+        assert!((330.0..440.0).contains(&unseen.area), "{} mm²", unseen.area);
+        assert!((25.0..31.0).contains(&unseen.across) && off(unseen.place, DVec3::new(40.0, 30.0, TOP)) < 3.0);
+        let dish = block(1.0, |p| damaged(0, p));
+        let repair = ask(&only_where(&dish, |p| p.z < 1.0 || !is_near(p, SIZE / 2.0, 10.0)));
+        assert!((300.0..440.0).contains(&repair.unseen[0].area), "{} mm²", repair.unseen[0].area);
+        assert_eq!(column(&turned(&only(&repair).mesh, turn.conjugate()), SIZE / 2.0), None, "metal over a gap");
+        let repair = ask(&only_where(&dish, |p| p.z > 0.1));
+        let [unseen] = &repair.unseen[..] else { panic!("{} gaps", repair.unseen.len()) };
+        assert!(unseen.area > 0.97 * SIZE.x * SIZE.y && off(unseen.place, (SIZE / 2.0).extend(0.0)) < 4.0);
+        assert!(only(&repair).bare < 0.05);
+        // A pocket of which only the sides were scanned does not go through the part.
+        let sides = only_where(&block(1.0, |p| pocket(p, 20.0)), |p| p.z < 1.0 || p.z > TOP - 19.9);
+        let repair = ask(&sides);
+        assert!(repair.through.is_empty() && repair.left[0].reason == Reason::Unseen, "{:?}", repair.left);
+        assert!((900.0..1200.0).contains(&repair.unseen[0].area), "{} of 1200 mm²", repair.unseen[0].area);
+    });
+}
