@@ -7,6 +7,7 @@
 mod found;
 mod groove;
 mod mouth;
+mod moved;
 
 use crate::chart::warp::WarpError;
 use crate::chart::{Chart, SurfaceError};
@@ -17,6 +18,7 @@ use found::{Found, Known};
 use glam::DVec3;
 use groove::{Groove, Shape};
 pub use mouth::Stretch;
+pub use moved::{Movement, moved};
 use planar::{Join, Polygon, Region};
 
 /// What counts as damage, and how it is welded; lengths in mm.

@@ -1,7 +1,7 @@
 //! What a scan of a damaged part lacks, and the metal for it.
 
 use bead_part::chart::Chart;
-use bead_part::damage::{Damage, DamageError, Reason, Repair, Settings, repair};
+use bead_part::damage::{Damage, DamageError, Movement, Reason, Repair, Settings, moved, repair};
 use bead_part::model::Mesh;
 use bead_part::task::Task;
 use glam::{DQuat, DVec2, DVec3};
@@ -337,5 +337,46 @@ fn what_the_scan_does_not_show_is_neither_damage_nor_sound() {
         let repair = ask(&sides);
         assert!(repair.through.is_empty() && repair.left[0].reason == Reason::Unseen, "{:?}", repair.left);
         assert!((900.0..1200.0).contains(&repair.unseen[0].area), "{} of 1200 mm²", repair.unseen[0].area);
+    });
+}
+
+/// Where the scan lies in comparison with the part, if it is moved.
+fn lies(part: &Mesh, scan: &Mesh) -> Option<Movement> {
+    moved(part, scan, SETTINGS, &Task::new()).unwrap()
+}
+
+#[test]
+fn a_scan_that_lies_shifted_or_turned_is_told_from_damage() {
+    let part = block(10.0, |_| TOP);
+    let middle = (SIZE / 2.0).extend(TOP / 2.0);
+    let ways = [
+        (DVec3::new(1.5, 0.0, 0.0), DVec3::ZERO),
+        (DVec3::new(0.0, -0.8, 1.2), DVec3::ZERO),
+        (DVec3::ZERO, DVec3::new(0.0, 0.025, 0.0)),
+        (DVec3::new(0.4, 1.0, -1.1), DVec3::new(0.01, -0.015, 0.012)),
+    ];
+    at_any_angle(|turn| {
+        let part = turned(&part, turn);
+        for kind in 0..6 {
+            let scan = turned(&block(2.0, |p| damaged(kind, p)), turn);
+            assert_eq!(lies(&part, &scan), None, "{kind}: the damage itself");
+            for (shift, axis) in ways.map(|(shift, axis)| (turn * shift, turn * axis)) {
+                let about = turn * middle;
+                let lie = |p: &DVec3| about + DQuat::from_scaled_axis(axis) * (*p - about) + shift;
+                let scan = Mesh { vertices: scan.vertices.iter().map(lie).collect(), ..scan.clone() };
+                let found = lies(&part, &scan).unwrap_or_else(|| panic!("{kind}: {shift} mm, {axis} rad"));
+                let off = (found.shift.distance(shift), found.turn.distance(axis));
+                assert!(off.0 < 0.15 && off.1 < 0.002, "{kind}: {shift} mm and {axis} rad, off by {off:?}");
+            }
+        }
+    });
+}
+
+#[test]
+fn wear_of_one_side_is_no_movement() {
+    // All of the top is worn by 2 mm; the underside was scanned as well.
+    let part = block(10.0, |_| TOP);
+    at_any_angle(|turn| {
+        assert_eq!(lies(&turned(&part, turn), &turned(&block(2.0, |_| TOP - 2.0), turn)), None);
     });
 }
