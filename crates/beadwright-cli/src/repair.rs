@@ -1,7 +1,7 @@
 //! `beadwright repair`: what a scan of a damaged part lacks, as metal to be welded with its bodies, for `plan --onto`.
 
 use crate::onto::Onto;
-use crate::{file, model, profile, progress, say};
+use crate::{file, model, onto, profile, progress, say};
 use anyhow::Context;
 use beadwright::adapt::scan;
 use beadwright::chart::{Chart, SurfaceError};
@@ -244,6 +244,7 @@ impl Files {
             !file::is_standard(output),
             "--output -: the metal, its bodies and the damaged part are three files; give the metal a name, such as repair.stl"
         );
+        onto::check_name(output)?;
         let beside = |extension: &str| output.with_extension(extension);
         Ok(Self { metal: output.to_owned(), base: beside("base.stl"), bodies: beside("bodies.toml") })
     }
