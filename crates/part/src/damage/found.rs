@@ -41,6 +41,9 @@ pub(super) struct Known {
 
 /// Faces are looked at in pieces of this many steps of the grid, and the part's faces beside damage in pieces of one.
 const PIECE: f64 = 2.0;
+/// The same as fractions of a bead, at most, so that what is known of damage does not depend on a coarse grid.
+const FINE: f64 = 0.5;
+const BESIDE: f64 = 1.0 / 3.0;
 /// Directions this close to an axis are along it: the cosine of 5°. Scans are never exactly level.
 const ALONG: f64 = 0.9962;
 /// Scan and part lie apart if half of the scan lies farther off than this part of the part's size.
@@ -66,7 +69,7 @@ pub(super) fn all(
     }
     let (low, high) = part.bounds();
     let is_within = |a: DVec3, b: DVec3| a.min(b).cmple(high).all() && a.max(b).cmpge(low).all();
-    let mut fine = warp::divided_where(scan, PIECE * settings.step, task, is_within).map_err(cancelled)?;
+    let mut fine = warp::divided_where(scan, piece(settings), task, is_within).map_err(cancelled)?;
     let nearest = nearest(surface, &fine.vertices, task)?;
     mouth::turned_out(&mut fine, surface, &nearest, settings.tolerance);
     let open = mouth::open_edges(&fine);
@@ -77,6 +80,10 @@ pub(super) fn all(
     share(&lacking, &mut places, settings);
     let places = places.into_iter().map(|found| found.opened(surface)).collect();
     Ok(Known { places, unseen: lacking.unseen })
+}
+
+fn piece(settings: Settings) -> f64 {
+    (PIECE * settings.step).min(FINE * settings.bead)
 }
 
 /// The places where the scan lies deeper inside the part than the tolerance.
@@ -105,8 +112,8 @@ fn deep(fine: &Mesh, nearest: &[(f64, DVec3)], open: &[[u32; 2]], settings: Sett
 
 /// The part's surface in pieces that are finer beside damage.
 fn pieces(part: &Mesh, places: &[Found], settings: Settings, task: &Task) -> Result<Mesh, DamageError> {
-    let coarse = warp::divided(part, PIECE * settings.step, task).map_err(cancelled)?;
-    let around = PIECE * settings.step + settings.tolerance;
+    let coarse = warp::divided(part, piece(settings), task).map_err(cancelled)?;
+    let around = piece(settings) + settings.tolerance;
     let corners = |found: &Found| {
         let (low, high) = Mesh { vertices: found.points().copied().collect(), ..Mesh::default() }.bounds();
         [low - around - found.depth, high + around + found.depth]
@@ -114,7 +121,7 @@ fn pieces(part: &Mesh, places: &[Found], settings: Settings, task: &Task) -> Res
     let boxes: Vec<[DVec3; 2]> = places.iter().map(corners).collect();
     let is_beside =
         |a: DVec3, b: DVec3| boxes.iter().any(|[low, high]| a.min(b).cmple(*high).all() && a.max(b).cmpge(*low).all());
-    warp::divided_where(&coarse, settings.step, task, is_beside).map_err(cancelled)
+    warp::divided_where(&coarse, settings.step.min(BESIDE * settings.bead), task, is_beside).map_err(cancelled)
 }
 
 /// Gives each place the part's faces that are missing there, and those beside them.
@@ -126,7 +133,7 @@ fn share(lacking: &Lacking, places: &mut [Found], settings: Settings) {
     let deep: Vec<_> = deep.map(|(k, corners)| GeomWithData::new(Triangle { corners }, k)).collect();
     let deep = RTree::bulk_load(deep);
     // Beside deep places the scan is not so deep: from there the way to a deep place is longer by no more than this.
-    let beside = PIECE * settings.step + settings.tolerance;
+    let beside = PIECE * piece(settings) + settings.tolerance;
     let place = |(k, distance): &(usize, f64)| {
         let middle = mouth::middle(&face(*k)).to_array();
         let nearest = deep.nearest_neighbor(&middle)?;
@@ -147,7 +154,7 @@ fn share(lacking: &Lacking, places: &mut [Found], settings: Settings) {
     // A stray piece is no mouth.
     let least = settings.tolerance * settings.tolerance;
     for found in places {
-        if found.mouth.iter().map(|face| mouth::vector(face).length()).sum::<f64>() < least {
+        if found.mouth_area() < least {
             found.mouth.clear();
             found.rim.clear();
         }
@@ -167,6 +174,21 @@ impl Found {
 
     fn area(&self) -> f64 {
         self.faces.iter().map(|face| mouth::vector(face).length()).sum()
+    }
+
+    /// What is missing of the part by the faces of scan and part alone, without a grid, mm³: what lies under the mouth along a direction,
+    /// less what lies under the scan.
+    pub(super) fn missing(&self, up: DVec3) -> f64 {
+        let under = |faces: &[Face], from: f64| {
+            faces.iter().map(|face| (mouth::middle(face).dot(up) - from) * mouth::vector(face).dot(up)).sum::<f64>()
+        };
+        let from = self.place.dot(up);
+        under(&self.mouth, from) - under(&self.faces, from)
+    }
+
+    /// The area of its mouth, mm².
+    pub(super) fn mouth_area(&self) -> f64 {
+        self.mouth.iter().map(|face| mouth::vector(face).length()).sum()
     }
 
     /// Two places as one.

@@ -35,6 +35,8 @@ const FACING: f64 = 0.05;
 /// Faces of the damaged part that lean more than 75° are sides of the damage or of the part, and no floor: the cosine of that.
 const SIDE: f64 = 0.26;
 
+/// Faces of a place that are asked whether something lies over them.
+const ASKED: usize = 50;
 /// Faces of the damaged part that lean more are upright: the cosine.
 const UPRIGHT: f64 = 1e-3;
 
@@ -106,7 +108,7 @@ impl Groove {
         }
         dug.dig(shape.rise());
         if !dug.open.contains(&true) {
-            return Err(Unfilled::Left(Reason::Hidden));
+            return Err(Unfilled::Left(missed(found, base, up, tolerance)));
         }
         let (floor, kept) = dug.beside(&side, shape.rise());
         let Dug { open, .. } = dug;
@@ -296,6 +298,33 @@ fn bounds(places: impl Iterator<Item = DVec2>) -> (DVec2, DVec2) {
 /// Those of some faces that are seen along a direction.
 fn facing(faces: &[Face], up: DVec3) -> impl Iterator<Item = &Face> {
     faces.iter().filter(move |face| mouth::vector(face).normalize_or_zero().dot(up) > FACING)
+}
+
+/// Why no place of a grid lies in some damage.
+fn missed(found: &Found, base: &Mesh, up: DVec3, tolerance: f64) -> Reason {
+    let is_floor = |face: &&Face| mouth::vector(face).normalize_or_zero().dot(up) > SIDE;
+    let floors: Vec<&Face> = found.faces.iter().filter(is_floor).collect();
+    if floors.is_empty() {
+        let seen = found.faces.iter().filter(|face| mouth::vector(face).normalize_or_zero().dot(up) > FACING).count();
+        return if 2 * seen > found.faces.len() { Reason::Steep } else { Reason::Hidden };
+    }
+    let asked: Vec<DVec3> =
+        floors.iter().step_by(floors.len().div_ceil(ASKED)).map(|face| mouth::middle(face)).collect();
+    let covered = asked.iter().filter(|p| is_covered(surface::seen(up, **p), base, up, tolerance)).count();
+    if 2 * covered > asked.len() { Reason::Hidden } else { Reason::Coarse }
+}
+
+/// Whether a mesh has a face over a place, both seen along a direction.
+fn is_covered(place: DVec3, base: &Mesh, up: DVec3, tolerance: f64) -> bool {
+    let p = place.truncate();
+    base.triangles.iter().any(|corners| {
+        let [a, b, c] = corners.map(|corner| surface::seen(up, base.vertices[corner as usize]));
+        let [q, r, s] = [a, b, c].map(|corner| corner.truncate());
+        let parts = [(r - p).perp_dot(s - p), (s - p).perp_dot(q - p), (q - p).perp_dot(r - p)];
+        let area: f64 = parts.iter().sum();
+        let height = (parts[0] * a.z + parts[1] * b.z + parts[2] * c.z) / area;
+        parts.iter().all(|part| part * area > 0.0) && height > place.z + tolerance
+    })
 }
 
 /// Those missing faces of the part, seen along a direction, under which the damaged part has no face that is seen as well.

@@ -66,6 +66,8 @@ pub struct Damage {
     pub milled: f64,
     /// Fraction of the place that no metal covers, such as a neck narrower than a bead.
     pub bare: f64,
+    /// What is missing by the faces of scan and part, mm³, if the grid is too coarse to measure it.
+    pub unresolved: Option<f64>,
 }
 
 /// A damaged place that is not welded.
@@ -93,6 +95,9 @@ pub enum Reason {
     /// It goes right through the part.
     #[error("it goes right through the part, so along that direction nothing lies under it")]
     Through,
+    /// No place of the grid lies in it, or too few to tell whether a bead fits.
+    #[error("the grid is too coarse for so small a place")]
+    Coarse,
     /// The scan shows its sides only.
     #[error("the scan does not show its floor")]
     Unseen,
@@ -193,7 +198,9 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
                 repair.damages.push(damage);
             }
             Err(reason) => {
-                let reason = bottomless.filter(|_| reason == Reason::Hidden).map_or(reason, |why| why.reason());
+                let reason = bottomless
+                    .filter(|_| matches!(reason, Reason::Hidden | Reason::Steep))
+                    .map_or(reason, |why| why.reason());
                 let up = settings.up.unwrap_or(found.open);
                 repair.left.push(Left { place: found.place, depth: found.depth, up, reason });
             }
@@ -277,7 +284,8 @@ impl Metal {
             }
             let polygons = groove.outline(part, settings, task)?;
             if polygons.is_empty() {
-                return Err(Unfilled::Left(Reason::Narrow));
+                let is_coarse = settings.step > FINE * settings.bead;
+                return Err(Unfilled::Left(if is_coarse { Reason::Coarse } else { Reason::Narrow }));
             }
             let chart = groove.chart(&polygons);
             let mesh = groove.metal(&polygons, settings, task)?;
@@ -285,7 +293,9 @@ impl Metal {
             let bare = groove.bare(found, &polygons);
             let over = settings.over() * polygons.iter().map(Polygon::area).sum::<f64>();
             let missing = (mesh.volume() - milled - over).max(0.0);
-            let damage = Damage { mesh, chart, up, place: found.place, depth: found.depth, missing, milled, bare };
+            let unresolved = unresolved(found, up, (missing, bare), settings);
+            let (place, depth) = (found.place, found.depth);
+            let damage = Damage { mesh, chart, up, place, depth, missing, milled, bare, unresolved };
             Ok(Self { groove, polygons, damage })
         };
         match shaped(Shape::Followed) {
@@ -296,6 +306,22 @@ impl Metal {
         shaped(Shape::Level(settings.sides.to_radians().tan()))
     }
 }
+
+/// What is missing by the faces of scan and part, mm³, if that on the grid differs so much that the grid is too coarse.
+fn unresolved(found: &Found, up: DVec3, (on_grid, bare): (f64, f64), settings: Settings) -> Option<f64> {
+    let missing = found.missing(up);
+    // On the grid a damage begins at half the tolerance.
+    let most = ROUGH * missing + settings.tolerance / 2.0 * found.mouth_area();
+    let is_coarse = (missing - on_grid).abs() > most && (bare < BARE || settings.step > FINE * settings.bead);
+    (is_coarse && found.ends <= settings.bead).then_some(missing)
+}
+
+/// A grid whose step is a greater fraction of a bead may miss where a bead fits.
+const FINE: f64 = 0.5;
+/// A grid is fine enough if what it measures is as true as this.
+const ROUGH: f64 = 0.15;
+/// Where more than this fraction of a place stays bare, less is welded for that reason.
+const BARE: f64 = 0.05;
 
 /// Layers are level where more than this fraction of what is missing would be milled so that they can follow the damage.
 const MILLED: f64 = 0.5;

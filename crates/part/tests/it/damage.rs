@@ -380,3 +380,28 @@ fn wear_of_one_side_is_no_movement() {
         assert_eq!(lies(&turned(&part, turn), &turned(&block(2.0, |_| TOP - 2.0), turn)), None);
     });
 }
+
+#[test]
+fn a_grid_too_coarse_for_the_damage_is_said() {
+    let part = block(10.0, |_| TOP);
+    at_any_angle(|turn| {
+        for (step, kind) in [2.0, 5.0, 14.0].into_iter().flat_map(|step| (0..5).map(move |k| (step, k))) {
+            let scan = block(1.0, |p| damaged(kind, p));
+            let missing = part.volume() - scan.volume();
+            let settings = Settings { step, ..SETTINGS };
+            let repair = repair(&turned(&part, turn), &turned(&scan, turn), settings, &Task::new()).unwrap();
+            let share = repair.damages.iter().map(|damage| damage.missing).sum::<f64>() / missing;
+            let is_wrong = !(0.75..1.25).contains(&share);
+            let unresolved = repair.damages.iter().find_map(|damage| damage.unresolved);
+            let is_said = unresolved.is_some() || repair.left.iter().any(|left| left.reason == Reason::Coarse);
+            assert!(is_said || !is_wrong, "{kind}, {step} mm: {share} of {missing} mm³");
+            assert!(!is_said || step > 2.0, "{kind}: {share}");
+            if let Some(unresolved) = unresolved {
+                assert!(
+                    (0.8..1.1).contains(&(unresolved / missing)),
+                    "{kind}, {step} mm: {unresolved} of {missing} mm³"
+                );
+            }
+        }
+    });
+}
