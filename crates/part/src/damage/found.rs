@@ -1,5 +1,6 @@
 //! Where a scan lies inside the part.
 
+use super::groove::RIM;
 use super::mouth::{self, Face, Lacking, Scan, Stretch, nearest};
 use super::{DamageError, Settings, cancelled};
 use crate::chart::warp;
@@ -68,6 +69,7 @@ pub(super) fn all(
         return Err(DamageError::Apart(half));
     }
     let (low, high) = part.bounds();
+    let (low, high) = (low - RIM * settings.step, high + RIM * settings.step);
     let is_within = |a: DVec3, b: DVec3| a.min(b).cmple(high).all() && a.max(b).cmpge(low).all();
     let mut fine = warp::divided_where(scan, piece(settings), task, is_within).map_err(cancelled)?;
     let nearest = nearest(surface, &fine.vertices, task)?;
@@ -113,7 +115,7 @@ fn deep(fine: &Mesh, nearest: &[(f64, DVec3)], open: &[[u32; 2]], settings: Sett
 /// The part's surface in pieces that are finer beside damage.
 fn pieces(part: &Mesh, places: &[Found], settings: Settings, task: &Task) -> Result<Mesh, DamageError> {
     let coarse = warp::divided(part, piece(settings), task).map_err(cancelled)?;
-    let around = piece(settings) + settings.tolerance;
+    let around = (1.0 + RIM) * piece(settings) + settings.tolerance;
     let corners = |found: &Found| {
         let (low, high) = Mesh { vertices: found.points().copied().collect(), ..Mesh::default() }.bounds();
         [low - around - found.depth, high + around + found.depth]

@@ -28,6 +28,9 @@ const STEP: f64 = 1.0;
 const LEAST: f64 = 0.01;
 /// Heights are measured for this many steps of the grid beside a groove.
 const BESIDE: usize = 2;
+/// Faces are divided this many steps beyond a box. Edges that lie beside the box by rounding alone, such as those of a part with round
+/// measures beside a grid, would stay as they are, and what meets them would be divided without end.
+pub(super) const RIM: f64 = 0.37;
 /// Chord tolerance, mm.
 const TOLERANCE: f64 = 0.02;
 /// Faces of the part that lean more than this are not seen: the cosine.
@@ -266,6 +269,7 @@ impl Groove {
     /// A mesh whose edges in the groove are no longer than this, mm.
     fn divided(&self, mesh: &Mesh, longest: f64, task: &Task) -> Result<Mesh, WarpError> {
         let (low, high) = self.bounds();
+        let (low, high) = (low - RIM * self.grid.step, high + RIM * self.grid.step);
         warp::divided_where(mesh, longest, task, |a, b| {
             let [a, b] = [a, b].map(|p| self.grid.seen(p).truncate());
             a.min(b).cmple(high).all() && a.max(b).cmpge(low).all()
