@@ -385,7 +385,7 @@ fn wear_of_one_side_is_no_movement() {
 fn a_grid_too_coarse_for_the_damage_is_said() {
     let part = block(10.0, |_| TOP);
     at_any_angle(|turn| {
-        for (step, kind) in [2.0, 5.0, 14.0].into_iter().flat_map(|step| (0..5).map(move |k| (step, k))) {
+        for (step, kind) in [2.0, 14.0].into_iter().flat_map(|step| (0..3).map(move |k| (step, k))) {
             let scan = block(1.0, |p| damaged(kind, p));
             let missing = part.volume() - scan.volume();
             let settings = Settings { step, ..SETTINGS };
