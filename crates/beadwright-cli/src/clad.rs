@@ -1,7 +1,7 @@
 //! `beadwright clad`: cladding over a surface or a pipe, as a model with its bodies, for `plan --onto`.
 
 use crate::onto::Onto;
-use crate::{file, model, profile, progress, say};
+use crate::{file, model, onto, profile, progress, say};
 use anyhow::Context;
 use beadwright::chart::Chart;
 use beadwright::chart::warp::WarpError;
@@ -53,6 +53,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         !file::is_standard(&arguments.output),
         "--output -: the cladding and its bodies are two files; give the model a name, such as cladding.stl"
     );
+    onto::check_name(&arguments.output)?;
     let is_base =
         arguments.output.canonicalize().is_ok_and(|path| model.canonicalize().is_ok_and(|model| model == path));
     anyhow::ensure!(!is_base, "{}: that is the base; give the cladding a file of its own", arguments.output.display());

@@ -3,6 +3,14 @@
 use crate::profile::Wanted;
 use std::path::Path;
 
+/// A model that is written is STL, so its name ends in .stl.
+pub(crate) fn check_name(output: &Path) -> anyhow::Result<()> {
+    let is_stl = output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("stl"));
+    let named = output.with_extension("stl");
+    anyhow::ensure!(is_stl, "--output {}: the model is written as STL; name it {}", output.display(), named.display());
+    Ok(())
+}
+
 /// Plans a model onto a base, with its bodies.
 pub(crate) struct Onto<'a> {
     pub(crate) model: &'a Path,

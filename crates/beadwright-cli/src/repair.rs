@@ -1,11 +1,11 @@
 //! `beadwright repair`: what a scan of a damaged part lacks, as metal to be welded with its bodies, for `plan --onto`.
 
 use crate::onto::Onto;
-use crate::{file, model, profile, progress, say};
+use crate::{file, model, onto, profile, progress, say};
 use anyhow::Context;
 use beadwright::adapt::scan;
 use beadwright::chart::{Chart, SurfaceError};
-use beadwright::damage::{self, Damage, DamageError, Left, Repair, Settings};
+use beadwright::damage::{self, Damage, DamageError, Left, Movement, Reason, Repair, Settings, Stretch};
 use beadwright::model::{Mesh, Solids, Units, stl};
 use beadwright::profile::{Body, Profile, Solid};
 use beadwright::task::Task;
@@ -84,7 +84,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (task, bar) = progress::task()?;
     let part = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?.mesh;
     let beside = arguments.model.drawn(&task)?.bounds().0.z;
-    let (scan, lowest) = arguments.scan(&task)?;
+    let scan = arguments.scan(&task)?;
+    let movement = damage::moved(&part, &scan, settings, &task).map_err(advised)?;
+    let (scan, lowest) = standing(scan);
     let found = |lower: f64| {
         let found = damage::repair(&lowered(&part, lower), &lowered(&scan, lower - lowest), settings, &task);
         found.map_err(advised).with_context(|| arguments.scan.display().to_string())
@@ -114,14 +116,21 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
              robot's base that much {against}."
         )?;
     }
-    for Left { place, depth, up, reason } in &repair.left {
+    if let Some(movement) = &movement {
+        writeln!(out, "{}", apart(movement))?;
+    }
+    for Stretch { place, area, across } in &repair.through {
         writeln!(
             out,
-            "warning: the damage {}, {depth:.1} mm deep, is not welded along {}: {reason}. Another direction (--up) may do; what is worn all \
-             around an axis is welded with `clad --around`.",
+            "warning: the damage {} goes right through the part, over {:.1} cm², {across:.0} mm across: nothing lies under it there, so it \
+             stays bare. Weld a plate under it that backs it, and scan the part again with it: it is filled from there.",
             at(*place, lower),
-            words(*up)
+            area / 100.0
         )?;
+    }
+    write_unseen(&mut out, &repair.unseen, lower)?;
+    for left in &repair.left {
+        writeln!(out, "{}", left_out(left, settings, lower))?;
     }
     let tolerance = settings.tolerance;
     if repair.damages.is_empty() {
@@ -139,6 +148,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
              of welding.",
             100.0 * bare,
             at(*place, lower)
+        )?;
+    }
+    for Damage { place, missing, unresolved, .. } in &repair.damages {
+        let Some(true_missing) = unresolved else { continue };
+        writeln!(
+            out,
+            "warning: the grid is too coarse for the damage {}: {:.1} cm³ are missing there, but {:.1} cm³ would be welded besides what is \
+             milled. Give a finer --step, such as {}.",
+            at(*place, lower),
+            true_missing / 1e3,
+            missing / 1e3,
+            finer(settings)
         )?;
     }
     files.write(&repair)?;
@@ -175,17 +196,90 @@ impl Arguments {
         Ok(Settings { up: up.transpose()?, step, tolerance, allowance, layer, bead, sides })
     }
 
-    /// The scan, standing on z = 0, and how high its lowest point lay above the plate.
-    fn scan(&self, task: &Task) -> anyhow::Result<(Mesh, f64)> {
+    /// The scan, mm.
+    fn scan(&self, task: &Task) -> anyhow::Result<Mesh> {
         let context = || self.scan.display().to_string();
         let scan = scan::read(&file::read(&self.scan)?, task).with_context(context)?;
         let unit = self.scan_units.in_mm();
-        let (mut mesh, _) = Mesh::from_triangles(scan.points.iter().map(|p| *p * unit).collect(), scan.triangles);
-        let lowest = mesh.bounds().0.z.max(0.0);
-        // Below the plate there is only noise.
-        mesh.vertices.iter_mut().for_each(|p| p.z = (p.z - lowest).max(0.0));
-        Ok((mesh, lowest))
+        Ok(Mesh::from_triangles(scan.points.iter().map(|p| *p * unit).collect(), scan.triangles).0)
     }
+}
+
+/// A scan, standing on z = 0, and how high its lowest point lay above the plate.
+fn standing(mut scan: Mesh) -> (Mesh, f64) {
+    let lowest = scan.bounds().0.z.max(0.0);
+    // Below the plate there is only noise.
+    scan.vertices.iter_mut().for_each(|p| p.z = (p.z - lowest).max(0.0));
+    (scan, lowest)
+}
+
+/// Says that a scan lies shifted or turned.
+fn apart(Movement { shift, turn, off, left }: &Movement) -> String {
+    let angle = turn.length().to_degrees();
+    let level = shift.z.abs() < OFF_PLATE && angle < 0.05;
+    let by_flag = if level {
+        format!(", or move the part to it with --shift ({:.1},{:.1} mm besides what is given)", shift.x, shift.y)
+    } else {
+        String::new()
+    };
+    format!(
+        "warning: {:.0} % of the scan lies off the part, but only {:.0} % would if it were moved: it seems to be shifted by {:.1} mm \
+         (x {:.1} y {:.1} z {:.1}) and turned by {angle:.1}°, and much of the damage is imaginary then. Unless the part is worn so evenly, \
+         align the scan with the part in the scanner's program (best fit) first{by_flag}.",
+        100.0 * off,
+        100.0 * left,
+        shift.length(),
+        shift.x + 0.0,
+        shift.y + 0.0,
+        shift.z + 0.0
+    )
+}
+
+/// Stretches without a scan that are named one by one.
+const NAMED: usize = 3;
+
+/// Says what of the part the scan does not show.
+fn write_unseen(out: &mut impl Write, unseen: &[Stretch], lower: f64) -> anyhow::Result<()> {
+    if unseen.is_empty() {
+        return Ok(());
+    }
+    let area: f64 = unseen.iter().map(|stretch| stretch.area).sum();
+    let named = unseen.iter().take(NAMED).map(|Stretch { place, area, across }| {
+        format!("{:.1} cm² {}, {across:.0} mm across", area / 100.0, at(*place, lower))
+    });
+    let rest = if unseen.len() > NAMED { ", and smaller ones" } else { "" };
+    writeln!(
+        out,
+        "warning: the scan does not show {:.1} cm² of the part: {}{rest}. Whether metal is missing there is not known, and nothing is \
+         welded there: scan these places as well if they may be damaged.",
+        area / 100.0,
+        named.collect::<Vec<_>>().join("; ")
+    )?;
+    Ok(())
+}
+
+/// Says that a place is not welded, why, and what helps.
+fn left_out(Left { place, depth, up, reason }: &Left, settings: Settings, lower: f64) -> String {
+    let remedy = match reason {
+        Reason::Through => "Weld a plate under it that backs it, and scan the part again.".to_owned(),
+        Reason::Unseen => "Scan it again, from a direction in which its floor is seen.".to_owned(),
+        Reason::Coarse => format!("Give a finer --step, such as {}.", finer(settings)),
+        Reason::Narrow | Reason::Hidden | Reason::Steep => {
+            "Another direction (--up) may do; what is worn all around an axis is welded with `clad --around`."
+                .to_owned()
+        }
+    };
+    format!(
+        "warning: the damage {}, {depth:.1} mm deep, is not welded along {}: {reason}. {remedy}",
+        at(*place, lower),
+        words(*up)
+    )
+}
+
+/// A spacing of the grid that shows more, mm.
+fn finer(settings: Settings) -> f64 {
+    let tenths = (settings.step / 2.0).min(settings.bead / 3.0) * 10.0;
+    tenths.floor().max(1.0) / 10.0
 }
 
 fn lowered(mesh: &Mesh, by: f64) -> Mesh {
@@ -244,6 +338,7 @@ impl Files {
             !file::is_standard(output),
             "--output -: the metal, its bodies and the damaged part are three files; give the metal a name, such as repair.stl"
         );
+        onto::check_name(output)?;
         let beside = |extension: &str| output.with_extension(extension);
         Ok(Self { metal: output.to_owned(), base: beside("base.stl"), bodies: beside("bodies.toml") })
     }

@@ -153,7 +153,10 @@ fn a_repair_is_planned_by_the_command_that_comes_with_it() {
     assert!(
         said.starts_with("warning: `plan`")
             && said.contains("17.0 mm lower than the part")
-            && said.contains("z 17.0 mm"),
+            && said.contains("z 20.0 mm")
+            // It shows the top alone, and that it lies lower may be its own fault.
+            && said.contains("shifted by 3.0 mm")
+            && said.contains("the scan does not show"),
         "{said}"
     );
 
@@ -163,6 +166,13 @@ fn a_repair_is_planned_by_the_command_that_comes_with_it() {
     assert!(
         fails(folder.path(), &["repair", "part.stl", "scan.stl", "-o", "scan.stl"]).contains("would be overwritten")
     );
+    // The model is STL, whatever it is called.
+    for wrong in ["metal.obj", "metal"] {
+        for command in [&["repair", "part.stl", "scan.stl"][..], &["clad", "part.stl"]] {
+            let why = fails(folder.path(), &[command, &["-o", wrong]].concat());
+            assert!(why.contains("name it metal.stl") && !folder.path().join(wrong).exists(), "{why}");
+        }
+    }
     let low = fails(folder.path(), &["repair", "part.stl", "scan.stl", "--allowance", "0.5"]);
     assert!(low.contains("height of a layer"), "{low}");
     let apart = fails(folder.path(), &["repair", "part.stl", "scan.stl", "--scan-units", "m"]);

@@ -26,7 +26,6 @@ mod cost;
 mod crashes;
 mod curve;
 mod cut;
-mod damage;
 mod definition;
 mod deposit;
 mod deposit_quick;

@@ -272,6 +272,11 @@ impl Grid {
         seen(self.up, p)
     }
 
+    /// The direction along which it is seen.
+    pub(crate) fn up(&self) -> DVec3 {
+        self.up
+    }
+
     pub(crate) fn place(&self, k: usize) -> DVec2 {
         self.from + DVec2::new((k % self.columns) as f64, (k / self.columns) as f64) * self.step
     }

@@ -4,10 +4,11 @@
 //! the part, so that no wall beside the damage is milled. Layers follow a floor that is flat enough; otherwise they are level.
 
 use super::found::Found;
+use super::mouth::{self, Face};
 use super::{Reason, Settings, Unfilled};
 use crate::chart::surface::{self, Grid};
 use crate::chart::warp::{self, WarpError};
-use crate::chart::{Chart, Plane, Surface};
+use crate::chart::{Chart, Plane, Surface, SurfaceError};
 use crate::model::Mesh;
 use crate::model::solid::Solid;
 use crate::task::Task;
@@ -27,12 +28,20 @@ const STEP: f64 = 1.0;
 const LEAST: f64 = 0.01;
 /// Heights are measured for this many steps of the grid beside a groove.
 const BESIDE: usize = 2;
+/// Faces are divided this many steps beyond a box. Edges that lie beside the box by rounding alone, such as those of a part with round
+/// measures beside a grid, would stay as they are, and what meets them would be divided without end.
+pub(super) const RIM: f64 = 0.37;
 /// Chord tolerance, mm.
 const TOLERANCE: f64 = 0.02;
 /// Faces of the part that lean more than this are not seen: the cosine.
 const FACING: f64 = 0.05;
 /// Faces of the damaged part that lean more than 75° are sides of the damage or of the part, and no floor: the cosine of that.
 const SIDE: f64 = 0.26;
+
+/// Faces of a place that are asked whether something lies over them.
+const ASKED: usize = 50;
+/// Faces of the damaged part that lean more are upright: the cosine.
+const UPRIGHT: f64 = 1e-3;
 
 /// How a groove is shaped and filled.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,26 +90,28 @@ impl Groove {
         settings: Settings,
     ) -> Result<Self, Unfilled> {
         let Settings { step, tolerance, bead, .. } = settings;
-        let seen = || found.points.iter().map(|p| surface::seen(up, *p).truncate());
-        let margin = found.depth / shape.rise() + bead + (BESIDE + 1) as f64 * step;
-        let low = seen().fold(DVec2::INFINITY, DVec2::min) - margin;
-        let high = seen().fold(DVec2::NEG_INFINITY, DVec2::max) + margin;
-        let grid = Grid::over(up, step, low, high)?;
+        let seen = || found.corners().map(|p| surface::seen(up, *p).truncate());
+        let beside = bead + (BESIDE + 1) as f64 * step;
+        let (low, high) = bounds(seen());
+        let (first, last) = bounds(part.vertices.iter().map(|p| surface::seen(up, *p).truncate()));
+        let margin = found.depth / shape.rise() + beside;
+        let grid = Grid::over(up, step, (low - margin).max(first - beside), (high + margin).min(last + beside))?;
         let is_floor = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).normalize_or_zero().dot(up) > SIDE;
         let (top, floors) = (grid.tops(part), grid.tops(&base.only(is_floor)));
         // A side begins where the part does.
         let side: Vec<bool> = floors.iter().map(Option::is_none).collect();
         let ground: Vec<Option<f64>> = floors.into_iter().zip(&top).map(|(floor, top)| floor.or(*top)).collect();
+        // What backs a hole lies outside the part, so that it is no damaged place, but it lies under the mouth.
         let near = near(&grid, seen());
         let is_deep = |k: usize| near[k] && matches!((top[k], ground[k]), (Some(t), Some(g)) if t - g > tolerance);
-        let mut dug =
-            Dug { grid: &grid, top: &top, floor: ground.clone(), open: (0..top.len()).map(is_deep).collect() };
+        let (open, void) = ((0..top.len()).map(is_deep).collect(), void(&grid, &top, base, bead));
+        let mut dug = Dug { grid: &grid, top: &top, void: &void, floor: ground.clone(), open };
         if matches!(shape, Shape::Level(_)) {
             dug.widen(bead / 2.0);
         }
         dug.dig(shape.rise());
         if !dug.open.contains(&true) {
-            return Err(Unfilled::Left(Reason::Hidden));
+            return Err(Unfilled::Left(missed(found, base, up, tolerance)));
         }
         let (floor, kept) = dug.beside(&side, shape.rise());
         let Dug { open, .. } = dug;
@@ -120,7 +131,7 @@ impl Groove {
             let around = neighbours(&self.grid, k).map(|(n, _)| n).chain([k]).filter_map(|k| self.ground[k]);
             around.fold(f64::INFINITY, f64::min) > seen.z + tolerance
         };
-        2 * found.points.iter().filter(over).count() > found.points.len()
+        2 * found.points().filter(over).count() > found.points().count()
     }
 
     /// What is welded, seen along the direction, mm: no narrower than a bead.
@@ -187,13 +198,17 @@ impl Groove {
         Ok(metal)
     }
 
-    /// The fraction of a place that no metal covers.
+    /// The fraction of a place that no metal covers: of its mouth, seen along the direction, or of the scan's faces if that is not seen.
     pub(super) fn bare(&self, found: &Found, polygons: &[Polygon]) -> f64 {
-        let is_bare = |p: &&DVec3| {
-            let place = self.grid.seen(**p).truncate();
+        let is_bare = |face: &&Face| {
+            let place = self.grid.seen(mouth::middle(face)).truncate();
             !polygons.iter().any(|polygon| polygon.contains(place))
         };
-        found.points.iter().filter(is_bare).count() as f64 / found.points.len() as f64
+        let faces: Vec<&Face> = facing(&found.mouth, self.up).collect();
+        let faces = if faces.is_empty() { found.faces.iter().collect() } else { faces };
+        let area = |face: &Face| mouth::vector(face).dot(self.up).abs();
+        let bare: f64 = faces.iter().copied().filter(is_bare).map(area).sum();
+        bare / faces.into_iter().map(area).sum::<f64>().max(f64::MIN_POSITIVE)
     }
 
     /// The damaged part with the groove milled, and how much is milled off, mm³.
@@ -254,6 +269,7 @@ impl Groove {
     /// A mesh whose edges in the groove are no longer than this, mm.
     fn divided(&self, mesh: &Mesh, longest: f64, task: &Task) -> Result<Mesh, WarpError> {
         let (low, high) = self.bounds();
+        let (low, high) = (low - RIM * self.grid.step, high + RIM * self.grid.step);
         warp::divided_where(mesh, longest, task, |a, b| {
             let [a, b] = [a, b].map(|p| self.grid.seen(p).truncate());
             a.min(b).cmple(high).all() && a.max(b).cmpge(low).all()
@@ -279,6 +295,83 @@ fn nearest(grid: &Grid, p: DVec2) -> Option<usize> {
     is_on_it.then(|| at.y as usize * grid.columns + at.x as usize)
 }
 
+fn bounds(places: impl Iterator<Item = DVec2>) -> (DVec2, DVec2) {
+    places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+}
+
+/// Those of some faces that are seen along a direction.
+fn facing(faces: &[Face], up: DVec3) -> impl Iterator<Item = &Face> {
+    faces.iter().filter(move |face| mouth::vector(face).normalize_or_zero().dot(up) > FACING)
+}
+
+/// Why no place of a grid lies in some damage.
+fn missed(found: &Found, base: &Mesh, up: DVec3, tolerance: f64) -> Reason {
+    let is_floor = |face: &&Face| mouth::vector(face).normalize_or_zero().dot(up) > SIDE;
+    let floors: Vec<&Face> = found.faces.iter().filter(is_floor).collect();
+    if floors.is_empty() {
+        let seen = found.faces.iter().filter(|face| mouth::vector(face).normalize_or_zero().dot(up) > FACING).count();
+        return if 2 * seen > found.faces.len() { Reason::Steep } else { Reason::Hidden };
+    }
+    let asked: Vec<DVec3> =
+        floors.iter().step_by(floors.len().div_ceil(ASKED)).map(|face| mouth::middle(face)).collect();
+    let covered = asked.iter().filter(|p| is_covered(surface::seen(up, **p), base, up, tolerance)).count();
+    if 2 * covered > asked.len() { Reason::Hidden } else { Reason::Coarse }
+}
+
+/// Whether a mesh has a face over a place, both seen along a direction.
+fn is_covered(place: DVec3, base: &Mesh, up: DVec3, tolerance: f64) -> bool {
+    let p = place.truncate();
+    base.triangles.iter().any(|corners| {
+        let [a, b, c] = corners.map(|corner| surface::seen(up, base.vertices[corner as usize]));
+        let [q, r, s] = [a, b, c].map(|corner| corner.truncate());
+        let parts = [(r - p).perp_dot(s - p), (s - p).perp_dot(q - p), (q - p).perp_dot(r - p)];
+        let area: f64 = parts.iter().sum();
+        let height = (parts[0] * a.z + parts[1] * b.z + parts[2] * c.z) / area;
+        parts.iter().all(|part| part * area > 0.0) && height > place.z + tolerance
+    })
+}
+
+/// Those missing faces of the part, seen along a direction, under which the damaged part has no face that is seen as well.
+pub(super) fn bottomless(
+    found: &Found,
+    part: &Mesh,
+    base: &Mesh,
+    up: DVec3,
+    settings: Settings,
+) -> Result<Vec<Face>, SurfaceError> {
+    let (low, high) = bounds(found.corners().map(|p| surface::seen(up, *p).truncate()));
+    let grid = Grid::over(up, settings.step, low, high)?;
+    let void = void(&grid, &grid.tops(part), base, settings.bead);
+    let is_void = |face: &&Face| nearest(&grid, grid.seen(mouth::middle(face)).truncate()).is_some_and(|k| void[k]);
+    Ok(facing(&found.mouth, up).filter(is_void).copied().collect())
+}
+
+/// Where the part lies on a grid, but nothing of the damaged part, over more than a small gap of the scan: a quarter of a bead's square, mm.
+fn void(grid: &Grid, top: &[Option<f64>], base: &Mesh, bead: f64) -> Vec<bool> {
+    let faces_up = |[a, b, c]: &[DVec3; 3]| (b - a).cross(c - a).normalize_or_zero().dot(grid.up()) > UPRIGHT;
+    let floors = grid.tops(&base.only(faces_up));
+    let empty: Vec<bool> = floors.iter().zip(top).map(|(floor, top)| floor.is_none() && top.is_some()).collect();
+    let (mut void, mut seen) = (vec![false; empty.len()], vec![false; empty.len()]);
+    for first in (0..empty.len()).filter(|k| empty[*k]) {
+        if std::mem::replace(&mut seen[first], true) {
+            continue;
+        }
+        let (mut region, mut next) = (vec![first], 0);
+        while let Some(k) = region.get(next).copied() {
+            next += 1;
+            for (n, _) in neighbours(grid, k).filter(|(n, _)| empty[*n]) {
+                if !std::mem::replace(&mut seen[n], true) {
+                    region.push(n);
+                }
+            }
+        }
+        if region.len() as f64 * grid.step * grid.step > bead * bead / 4.0 {
+            region.into_iter().for_each(|k| void[k] = true);
+        }
+    }
+    void
+}
+
 /// Where a grid lies within two steps of places, which are no farther apart than that.
 fn near(grid: &Grid, places: impl Iterator<Item = DVec2>) -> Vec<bool> {
     let mut near = vec![false; grid.columns * grid.rows];
@@ -295,12 +388,19 @@ struct Dug<'a> {
     grid: &'a Grid,
     /// The part.
     top: &'a [Option<f64>],
+    /// Where it is not known that there is metal under it, so that nothing is dug.
+    void: &'a [bool],
     floor: Vec<Option<f64>>,
     /// Whether metal is missing or milled.
     open: Vec<bool>,
 }
 
 impl Dug<'_> {
+    /// Whether a groove may reach from one place to another.
+    fn is_beside(&self, from: usize, to: usize, away: f64) -> bool {
+        is_even(self.top, from, to, away) && !self.void[to]
+    }
+
     /// Makes the floor as low within a radius (mm) of each open place as it is there.
     fn widen(&mut self, radius: f64) {
         let steps = (radius / self.grid.step).ceil() as isize;
@@ -310,7 +410,7 @@ impl Dug<'_> {
         for k in (0..before.len()).filter(|k| self.open[*k]).collect::<Vec<_>>() {
             let Some(low) = before[k] else { continue };
             for (n, away) in ways.iter().filter_map(|way| beyond(self.grid, k, *way)) {
-                if is_even(self.top, k, n, away) && self.floor[n].is_some_and(|floor| floor > low) {
+                if self.is_beside(k, n, away) && self.floor[n].is_some_and(|floor| floor > low) {
                     (self.floor[n], self.open[n]) = (Some(low), true);
                 }
             }
@@ -326,7 +426,7 @@ impl Dug<'_> {
                 let Some(low) = self.floor[k].filter(|_| self.open[k]) else { continue };
                 for (n, away) in neighbours(self.grid, k) {
                     let highest = low + rise * away;
-                    if is_even(self.top, k, n, away) && self.floor[n].is_some_and(|floor| floor > highest + LEAST) {
+                    if self.is_beside(k, n, away) && self.floor[n].is_some_and(|floor| floor > highest + LEAST) {
                         (self.floor[n], self.open[n], changed) = (Some(highest), true, true);
                     }
                 }

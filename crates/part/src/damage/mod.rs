@@ -6,15 +6,19 @@
 
 mod found;
 mod groove;
+mod mouth;
+mod moved;
 
 use crate::chart::warp::WarpError;
 use crate::chart::{Chart, SurfaceError};
 use crate::deviation;
 use crate::model::Mesh;
 use crate::task::{Cancelled, Task};
-use found::Found;
+use found::{Found, Known};
 use glam::DVec3;
 use groove::{Groove, Shape};
+pub use mouth::Stretch;
+pub use moved::{Movement, moved};
 use planar::{Join, Polygon, Region};
 
 /// What counts as damage, and how it is welded; lengths in mm.
@@ -52,9 +56,9 @@ pub struct Damage {
     pub chart: Chart,
     /// Direction along which they are stacked.
     pub up: DVec3,
-    /// Its deepest place, on the scan, mm.
+    /// Its middle, on the part's surface, mm.
     pub place: DVec3,
-    /// How far the scan lies inside the part there, mm.
+    /// How far the scan lies under the part's surface where that is missing, mm.
     pub depth: f64,
     /// What is missing of the part, mm³.
     pub missing: f64,
@@ -62,14 +66,16 @@ pub struct Damage {
     pub milled: f64,
     /// Fraction of the place that no metal covers, such as a neck narrower than a bead.
     pub bare: f64,
+    /// What is missing by the faces of scan and part, mm³, if the grid is too coarse to measure it.
+    pub unresolved: Option<f64>,
 }
 
 /// A damaged place that is not welded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Left {
-    /// Its deepest place, on the scan, mm.
+    /// Its middle, on the part's surface, mm.
     pub place: DVec3,
-    /// How far the scan lies inside the part there, mm.
+    /// How far the scan lies under the part's surface where that is missing, mm.
     pub depth: f64,
     /// The direction along which it was to be welded.
     pub up: DVec3,
@@ -86,6 +92,15 @@ pub enum Reason {
     /// Something of the damaged part lies over it, or it has no floor.
     #[error("along that direction it lies under metal, or nothing lies under it")]
     Hidden,
+    /// It goes right through the part.
+    #[error("it goes right through the part, so along that direction nothing lies under it")]
+    Through,
+    /// No place of the grid lies in it, or too few to tell whether a bead fits.
+    #[error("the grid is too coarse for so small a place")]
+    Coarse,
+    /// The scan shows its sides only.
+    #[error("the scan does not show its floor")]
+    Unseen,
     /// Layers cannot follow the part.
     #[error("along that direction the surface is too steep")]
     Steep,
@@ -98,6 +113,11 @@ pub struct Repair {
     pub damages: Vec<Damage>,
     /// What is not, the deepest first.
     pub left: Vec<Left>,
+    /// Stretches of the part's surface under which damage goes right through the part, so that they stay bare; the largest first.
+    pub through: Vec<Stretch>,
+    /// Stretches of the part's surface of which the scan shows neither that they are there nor that they are missing, nor how deep damage
+    /// is under them; the largest first.
+    pub unseen: Vec<Stretch>,
     /// The damaged part once its grooves are milled, mm.
     pub base: Mesh,
 }
@@ -157,22 +177,30 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
     if scan.triangles.is_empty() {
         return Err(DamageError::NoFaces);
     }
-    let found = found::all(&surface, part, scan, settings, task)?;
+    let Known { places: found, unseen } = found::all(&surface, part, scan, settings, task)?;
     let fill = |found| Place::filled(found, part, scan, settings, task);
     let mut places = found.into_iter().map(fill).collect::<Result<Vec<_>, _>>()?;
     while let Some([a, b]) = meeting(&places, settings.bead) {
         let other = places.swap_remove(b).found;
         let one = places.swap_remove(a).found;
-        places.push(fill(one.and(other))?);
+        places.push(fill(one.and(other, &surface))?);
     }
-    let mut repair = Repair { base: scan.clone(), ..Repair::default() };
-    for Place { found, metal } in places {
+    let mut repair = Repair { base: scan.clone(), unseen, ..Repair::default() };
+    for Place { found, metal, bottomless } in places {
+        match &bottomless {
+            Some(Bottomless::Through(stretch)) => repair.through.push(*stretch),
+            Some(Bottomless::Unseen(stretch)) => repair.unseen.push(*stretch),
+            None => {}
+        }
         match metal {
             Ok(Metal { groove, polygons, damage }) => {
                 (repair.base, _) = groove.milled(&repair.base, &polygons, settings, task).map_err(cancelled)?;
                 repair.damages.push(damage);
             }
             Err(reason) => {
+                let reason = bottomless
+                    .filter(|_| matches!(reason, Reason::Hidden | Reason::Steep))
+                    .map_or(reason, |why| why.reason());
                 let up = settings.up.unwrap_or(found.open);
                 repair.left.push(Left { place: found.place, depth: found.depth, up, reason });
             }
@@ -180,6 +208,8 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
     }
     repair.damages.sort_by(|a, b| b.missing.total_cmp(&a.missing));
     repair.left.sort_by(|a, b| b.depth.total_cmp(&a.depth));
+    repair.through.sort_by(|a, b| b.area.total_cmp(&a.area));
+    repair.unseen.sort_by(|a, b| b.area.total_cmp(&a.area));
     Ok(repair)
 }
 
@@ -187,6 +217,35 @@ pub fn repair(part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Resu
 struct Place {
     found: Found,
     metal: Result<Metal, Reason>,
+    bottomless: Option<Bottomless>,
+}
+
+/// Why nothing lies under a stretch of the part's surface.
+#[derive(Clone, Copy)]
+enum Bottomless {
+    /// The damage goes right through the part.
+    Through(Stretch),
+    /// The scan has a gap there.
+    Unseen(Stretch),
+}
+
+impl Bottomless {
+    /// `None` if less than a bead lacks a floor.
+    fn of(found: &Found, part: &Mesh, scan: &Mesh, settings: Settings) -> Result<Option<Self>, SurfaceError> {
+        let up = settings.up.unwrap_or(found.open);
+        let faces = groove::bottomless(found, part, scan, up, settings)?;
+        let stretch = Stretch::of(&faces).filter(|stretch| stretch.area > settings.bead * settings.bead / 4.0);
+        // A scan that ends inside the part does not show that there is nothing.
+        let has_gap = found.ends > settings.bead;
+        Ok(stretch.map(|stretch| if has_gap { Self::Unseen(stretch) } else { Self::Through(stretch) }))
+    }
+
+    fn reason(self) -> Reason {
+        match self {
+            Self::Through(_) => Reason::Through,
+            Self::Unseen(_) => Reason::Unseen,
+        }
+    }
 }
 
 struct Metal {
@@ -198,9 +257,10 @@ struct Metal {
 
 impl Place {
     fn filled(found: Found, part: &Mesh, scan: &Mesh, settings: Settings, task: &Task) -> Result<Self, DamageError> {
+        let bottomless = Bottomless::of(&found, part, scan, settings)?;
         match Metal::of(&found, part, scan, settings, task) {
-            Ok(metal) => Ok(Self { found, metal: Ok(metal) }),
-            Err(Unfilled::Left(reason)) => Ok(Self { found, metal: Err(reason) }),
+            Ok(metal) => Ok(Self { found, metal: Ok(metal), bottomless }),
+            Err(Unfilled::Left(reason)) => Ok(Self { found, metal: Err(reason), bottomless }),
             Err(Unfilled::Error(error)) => Err(error),
         }
     }
@@ -224,7 +284,8 @@ impl Metal {
             }
             let polygons = groove.outline(part, settings, task)?;
             if polygons.is_empty() {
-                return Err(Unfilled::Left(Reason::Narrow));
+                let is_coarse = settings.step > FINE * settings.bead;
+                return Err(Unfilled::Left(if is_coarse { Reason::Coarse } else { Reason::Narrow }));
             }
             let chart = groove.chart(&polygons);
             let mesh = groove.metal(&polygons, settings, task)?;
@@ -232,7 +293,9 @@ impl Metal {
             let bare = groove.bare(found, &polygons);
             let over = settings.over() * polygons.iter().map(Polygon::area).sum::<f64>();
             let missing = (mesh.volume() - milled - over).max(0.0);
-            let damage = Damage { mesh, chart, up, place: found.place, depth: found.depth, missing, milled, bare };
+            let unresolved = unresolved(found, up, (missing, bare), settings);
+            let (place, depth) = (found.place, found.depth);
+            let damage = Damage { mesh, chart, up, place, depth, missing, milled, bare, unresolved };
             Ok(Self { groove, polygons, damage })
         };
         match shaped(Shape::Followed) {
@@ -243,6 +306,22 @@ impl Metal {
         shaped(Shape::Level(settings.sides.to_radians().tan()))
     }
 }
+
+/// What is missing by the faces of scan and part, mm³, if that on the grid differs so much that the grid is too coarse.
+fn unresolved(found: &Found, up: DVec3, (on_grid, bare): (f64, f64), settings: Settings) -> Option<f64> {
+    let missing = found.missing(up);
+    // On the grid a damage begins at half the tolerance.
+    let most = ROUGH * missing + settings.tolerance / 2.0 * found.mouth_area();
+    let is_coarse = (missing - on_grid).abs() > most && (bare < BARE || settings.step > FINE * settings.bead);
+    (is_coarse && found.ends <= settings.bead).then_some(missing)
+}
+
+/// A grid whose step is a greater fraction of a bead may miss where a bead fits.
+const FINE: f64 = 0.5;
+/// A grid is fine enough if what it measures is as true as this.
+const ROUGH: f64 = 0.15;
+/// Where more than this fraction of a place stays bare, less is welded for that reason.
+const BARE: f64 = 0.05;
 
 /// Layers are level where more than this fraction of what is missing would be milled so that they can follow the damage.
 const MILLED: f64 = 0.5;

@@ -3,5 +3,6 @@
 
 mod charts;
 mod cladding;
+mod damage;
 mod directions;
 mod solids;
