@@ -5,3 +5,4 @@ mod charts;
 mod cladding;
 mod directions;
 mod solids;
+mod tubes;
