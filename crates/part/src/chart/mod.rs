@@ -16,6 +16,7 @@
 //! | [`seam`] | islands that cross the line at which a layer is unrolled |
 //! | `text` | charts as people write them: `cylinder:axis=z,radius=36` |
 
+mod bound;
 mod cone;
 mod cylinder;
 mod guide;
@@ -26,6 +27,7 @@ pub(crate) mod surface;
 mod text;
 pub mod warp;
 
+pub use bound::Bound;
 pub use cone::Cone;
 pub use cylinder::{Cylinder, Side};
 pub use guide::{Guide, GuideError};

@@ -1,6 +1,6 @@
 //! Charts as people write them: a name, then keys and values, such as `cylinder:axis=z,radius=36`.
 
-use super::{Chart, Cone, Cylinder, Guide, GuideError, Plane, Side, Surface, SurfaceError};
+use super::{Bound, Chart, Cone, Cylinder, Guide, GuideError, Plane, Side, Surface, SurfaceError};
 use glam::{DVec2, DVec3};
 use std::fmt;
 use std::str::FromStr;
@@ -41,6 +41,12 @@ pub enum ChartError {
     /// Something other than a plane where a half-space is meant.
     #[error("\"{0}\" is no plane: write up=X/Y/Z,through=X/Y/Z; what lies above it is kept")]
     Half(String),
+    /// Something other than a plane or a cylinder as a bound.
+    #[error(
+        "\"{0}\" bounds nothing: write up=X/Y/Z,through=X/Y/Z for what lies above a plane, or \
+         cylinder:axis=X/Y/Z,through=X/Y/Z,radius=R,side=inner (or outer)"
+    )]
+    Bound(String),
     /// Points and radii that do not define a guide.
     #[error(transparent)]
     Guide(#[from] GuideError),
@@ -72,17 +78,7 @@ impl FromStr for Chart {
         let (name, values) = text.split_once(':').unwrap_or((text, ""));
         match name.trim() {
             "plane" => Ok(Self::Plane(plane(values)?)),
-            "cylinder" => {
-                let keys = ["axis", "through", "radius", "side", "seam"];
-                let given = Given::new("cylinder", CYLINDER, values, &keys)?;
-                Ok(Self::Cylinder(Cylinder {
-                    axis: given.direction("axis")?,
-                    through: given.place("through")?,
-                    radius: given.radius()?,
-                    side: given.side()?,
-                    seam: given.angle("seam", -360.0..=360.0)?.unwrap_or(SEAM),
-                }))
-            }
+            "cylinder" => Ok(Self::Cylinder(cylinder(values)?)),
             "cone" => {
                 let given = Given::new("cone", CONE, values, &["axis", "tip", "angle", "seam"])?;
                 let why = "the angle between its axis and its side, °";
@@ -137,6 +133,30 @@ fn plane(values: &str) -> Result<Plane, ChartError> {
     Ok(Plane { up: given.direction("up")?, origin: given.place("through")? })
 }
 
+fn cylinder(values: &str) -> Result<Cylinder, ChartError> {
+    let given = Given::new("cylinder", CYLINDER, values, &["axis", "through", "radius", "side", "seam"])?;
+    Ok(Cylinder {
+        axis: given.direction("axis")?,
+        through: given.place("through")?,
+        radius: given.radius()?,
+        side: given.side()?,
+        seam: given.angle("seam", -360.0..=360.0)?.unwrap_or(SEAM),
+    })
+}
+
+impl FromStr for Bound {
+    type Err = ChartError;
+
+    /// Reads a plane, or `cylinder:axis=z,through=0/0/0,radius=15,side=inner`.
+    fn from_str(text: &str) -> Result<Self, ChartError> {
+        match text.split_once(':') {
+            Some((name, values)) if name.trim() == "cylinder" => cylinder(values).map(Self::Cylinder),
+            Some((name, _)) if name.trim() != "plane" => Err(ChartError::Bound(text.to_owned())),
+            _ => text.parse().map(Self::Plane),
+        }
+    }
+}
+
 impl FromStr for Plane {
     type Err = ChartError;
 
@@ -159,11 +179,7 @@ impl fmt::Display for Chart {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Plane(plane) => write!(f, "plane:{plane}"),
-            Self::Cylinder(Cylinder { through, axis, radius, side, seam }) => {
-                let side = if *side == Side::Inner { "inner" } else { "outer" };
-                let (axis, through) = (three_of(*axis), three_of(*through));
-                write!(f, "cylinder:axis={axis},through={through},radius={radius},side={side},seam={seam}")
-            }
+            Self::Cylinder(cylinder) => write!(f, "{},seam={}", seamless(cylinder), cylinder.seam),
             Self::Cone(Cone { tip, axis, half_angle, seam }) => {
                 write!(f, "cone:axis={},tip={},angle={half_angle},seam={seam}", three_of(*axis), three_of(*tip))
             }
@@ -195,6 +211,35 @@ impl fmt::Display for Chart {
 /// A vector as text.
 fn three_of(v: DVec3) -> String {
     format!("{}/{}/{}", v.x, v.y, v.z)
+}
+
+/// A cylinder as text, without the seam.
+fn seamless(Cylinder { through, axis, radius, side, .. }: &Cylinder) -> String {
+    let side = if *side == Side::Inner { "inner" } else { "outer" };
+    format!("cylinder:axis={},through={},radius={radius},side={side}", three_of(*axis), three_of(*through))
+}
+
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Plane(plane) => plane.fmt(f),
+            Self::Cylinder(cylinder) => f.write_str(&seamless(cylinder)),
+        }
+    }
+}
+
+impl From<Bound> for String {
+    fn from(bound: Bound) -> Self {
+        bound.to_string()
+    }
+}
+
+impl TryFrom<String> for Bound {
+    type Error = ChartError;
+
+    fn try_from(text: String) -> Result<Self, ChartError> {
+        text.parse()
+    }
 }
 
 impl fmt::Display for Plane {

@@ -135,7 +135,7 @@ impl Hub {
 }
 
 /// The point nearest to all normals, as lines (weighted least squares), mm.
-fn middle(faces: &[(DVec2, DVec2, f64)], past: f64) -> Option<DVec2> {
+pub(super) fn middle(faces: &[(DVec2, DVec2, f64)], past: f64) -> Option<DVec2> {
     let mut middle: Option<DVec2> = None;
     for _ in 0..STEPS {
         let (mut matrix, mut sum) = (DMat2::ZERO, DVec2::ZERO);

@@ -4,7 +4,7 @@ use super::between::between;
 use super::samples::{area, samples};
 use super::ways::Judge;
 use super::{Piece, State};
-use crate::chart::{Chart, Plane};
+use crate::chart::{Bound, Chart, Plane};
 use crate::model::{Mesh, Solids};
 use glam::DVec3;
 
@@ -78,7 +78,8 @@ fn pieces(groups: &[Group], plane: Plane, cuts: &[Plane]) -> Option<Vec<Piece>> 
         let square = group.up == plane.up;
         let lowest = group.mesh.vertices.iter().map(|p| group.up.dot(*p)).fold(f64::MAX, f64::min);
         let first = if square { plane } else { Plane { origin: group.up * lowest, up: group.up } };
-        let within = cuts.iter().copied().chain((!square).then_some(plane)).chain(parted).collect();
+        let planes = cuts.iter().copied().chain((!square).then_some(plane)).chain(parted);
+        let within = planes.map(Bound::Plane).collect();
         Some(Piece { chart: Chart::Plane(first.rounded()), within, on_stock: false })
     };
     groups.iter().enumerate().map(piece).collect()

@@ -10,6 +10,7 @@
 //! | file | what it does |
 //! | --- | --- |
 //! | `around` | blades on a hub: layers around an axis |
+//! | `tubes` | straight tubes that branch, each along its axis |
 //! | `samples` | the surface as many small samples |
 //! | `ways` | candidate directions, and the best one for a piece |
 //! | `cut` | a plane takes off what lies above it |
@@ -19,9 +20,10 @@ mod around;
 mod between;
 mod cut;
 mod samples;
+mod tubes;
 mod ways;
 
-use crate::chart::{Chart, Guide, Plane};
+use crate::chart::{Bound, Chart, Guide, Plane};
 use crate::middle_line::{NoMiddleLine, middle_line};
 use crate::model::Mesh;
 use crate::task::{Cancelled, Task};
@@ -59,8 +61,8 @@ pub struct Division {
 pub struct Piece {
     /// The shape of its layers; the first begins at its lowest point.
     pub chart: Chart,
-    /// The piece is what lies above these planes and above the start of its first layer.
-    pub within: Vec<Plane>,
+    /// The piece is what lies within these bounds and above the start of its first layer.
+    pub within: Vec<Bound>,
     /// Whether its first layer lies on metal that is there already, such as a turned hub.
     pub on_stock: bool,
 }
@@ -126,7 +128,8 @@ pub fn divisions(mesh: &Mesh, settings: Settings, task: &Task) -> Result<Vec<Div
     if whole.hanging[0] <= judge.nothing {
         return Ok(vec![whole.division()]);
     }
-    let recognized = tube(mesh, &judge, &whole, task)?.into_iter().chain(around::around(&whole, &judge));
+    let recognized = tube(mesh, &judge, &whole, task)?.into_iter().chain(tubes::tubes(&whole, &judge));
+    let recognized = recognized.chain(around::around(&whole, &judge));
     let mut offered: Vec<Division> = recognized.collect();
     if offered.iter().any(|division| division.hanging <= judge.nothing) {
         offered.push(whole.division());
@@ -220,7 +223,8 @@ impl State {
 
     fn division(self) -> Division {
         let tilt = self.pieces.iter().map(Piece::tilt).fold(0.0, f64::max);
-        let trunk = Piece { chart: Chart::default(), within: self.cuts, on_stock: false };
+        let within = self.cuts.into_iter().map(Bound::Plane).collect();
+        let trunk = Piece { chart: Chart::default(), within, on_stock: false };
         let pieces = std::iter::once(trunk).chain(self.pieces.into_iter().rev()).collect();
         Division { pieces, hanging: self.hanging.iter().sum(), tilt }
     }
@@ -239,6 +243,11 @@ impl Division {
 }
 
 impl Piece {
+    /// Whether a point lies in it, or no farther than `over` (mm) outside.
+    fn has(&self, p: DVec3, over: f64) -> bool {
+        self.chart.coordinates(p).z >= -over && self.within.iter().all(|bound| bound.height(p) >= -over)
+    }
+
     /// Angle between its direction and the vertical, °.
     fn tilt(&self) -> f64 {
         match &self.chart {

@@ -1,6 +1,6 @@
 //! Parts divided into pieces with directions of their own: nothing is lost, and what overhangs is spared however the part is turned.
 
-use bead_part::chart::{Chart, Plane};
+use bead_part::chart::{Bound, Chart};
 use bead_part::directions::{Division, Settings, divisions};
 use bead_part::example;
 use bead_part::model::Mesh;
@@ -41,9 +41,9 @@ fn found(mesh: &Mesh, settings: Settings) -> Vec<Division> {
 }
 
 /// What of a part a piece consists of.
-fn cut_out(mesh: &Mesh, chart: &Chart, within: &[Plane]) -> Mesh {
-    let Chart::Plane(first) = chart else { panic!("{chart}") };
-    within.iter().chain([first]).fold(mesh.clone(), |rest, plane| plane.above(&rest))
+pub(crate) fn cut_out(mesh: &Mesh, chart: &Chart, within: &[Bound]) -> Mesh {
+    let Chart::Plane(first) = *chart else { panic!("{chart}") };
+    within.iter().chain([&Bound::Plane(first)]).fold(mesh.clone(), |rest, bound| bound.part_of(&rest))
 }
 
 #[test]

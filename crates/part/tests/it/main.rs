@@ -6,3 +6,4 @@ mod cladding;
 mod damage;
 mod directions;
 mod solids;
+mod tubes;

@@ -1,0 +1,344 @@
+//! Straight tubes and bars that branch: each is built along its own axis, and begins on the one that carries it.
+//!
+//! Cylinders are found by pairs of surface samples, whose normals both meet the axis (as in RANSAC by Schnabel et al.
+//! 2007), and made better by all the samples that lie on them. A branch is what lies inside its own cylinder and outside
+//! that of the tube that carries it, so its first layers end on that tube.
+
+use super::around::middle;
+use super::samples::{Sample, area};
+use super::ways::{Judge, lies};
+use super::{Division, Piece, State};
+use crate::chart::{Bound, Chart, Cylinder, Plane, Side};
+use crate::model::Mesh;
+use glam::{DMat3, DVec2, DVec3};
+
+/// A sample lies on a cylinder if it is this near to it, as a fraction of the radius, and its normal this near to the
+/// radial direction (cosine).
+const NEAR: f64 = 0.04;
+const RADIAL: f64 = 0.97;
+/// Pairs of samples tried for each cylinder.
+const PAIRS: usize = 3000;
+/// Normals of a pair must differ by at least this sine.
+const APART: f64 = 0.3;
+/// Most tubes of a part.
+const MOST: usize = 64;
+/// A tube has at least this fraction of the part's surface.
+const LEAST: f64 = 0.004;
+/// Its samples are cut into pieces where they leave a gap along the axis, in radii.
+const GAP: f64 = 1.0;
+/// Samples must lie in this fraction of the sectors around an axis.
+const ROUND: f64 = 0.6;
+const SECTORS: usize = 24;
+/// At most this fraction of the surface may lie on no tube and at no end of one.
+const ELSE: f64 = 0.03;
+/// Tubes are this much thicker than their samples, mm, so that their own surface is cut nowhere.
+const THICKER: f64 = 0.05;
+/// Level layers must leave this many times as much area overhanging.
+const BETTER: f64 = 2.0;
+/// Ends of tubes are known to this fraction of the part's size.
+const SLACK: f64 = 0.02;
+/// A pair of samples lies within this fraction of the size.
+const NEIGHBOURS: f64 = 0.3;
+/// Samples by which a candidate is judged, at most about.
+const COUNTED: usize = 2000;
+/// Rounds in which a tube is fitted to its samples, and steps of the power iteration for its axis.
+const FITS: usize = 4;
+const POWERS: usize = 60;
+/// Sine of the least angle between a branch and its carrier.
+const FLATTEST: f64 = 0.3;
+/// Axes within this of the vertical are vertical, °.
+const UPRIGHT: f64 = 1.0;
+
+/// Pieces of one part may lie this far over their bounds, mm.
+const OVER: f64 = 0.1;
+
+/// The part as straight tubes, each built along its axis, if it is made of several and far less area overhangs than in
+/// level layers.
+pub(super) fn tubes(whole: &State, judge: &Judge) -> Option<Division> {
+    let slack = SLACK * judge.size;
+    let mut open = found(&whole.samples, &whole.trunk, judge);
+    let is_else = |sample: &&Sample| !open.iter().any(|tube| tube.has(sample.place, slack));
+    if open.len() < 2 || area(whole.samples.iter().filter(is_else)) > ELSE * judge.surface {
+        return None;
+    }
+    let roots: Vec<Tube> = open.extract_if(.., |tube| tube.stands(judge, slack)).collect();
+    let mut placed: Vec<Placed> = roots.into_iter().map(Placed::root).collect();
+    let mut next = 0;
+    while let Some(carrier) = placed.get(next).map(|own| own.tube) {
+        let carried: Vec<Tube> = open.extract_if(.., |tube| !tube.branches(&carrier, slack).is_empty()).collect();
+        for (tube, up) in carried.iter().flat_map(|tube| tube.branches(&carrier, slack)) {
+            let own = Placed::on(&carrier, tube, up, &placed);
+            placed.push(own);
+        }
+        next += 1;
+    }
+    if placed.is_empty() || !open.is_empty() {
+        return None;
+    }
+    let tilt = placed.iter().map(|own| own.piece.tilt()).fold(0.0, f64::max);
+    let hangs = |sample: &&Sample| {
+        let own = placed.iter().find(|own| own.piece.has(sample.place, OVER));
+        !judge.stands(sample, judge.table()) && own.is_none_or(|own| judge.hangs(sample, own.up))
+    };
+    let hanging = area(whole.samples.iter().filter(hangs));
+    let pieces = placed.into_iter().map(|own| own.piece).collect();
+    let fits = tilt <= judge.settings.tilt + UPRIGHT && BETTER * hanging < whole.hanging[0];
+    fits.then_some(Division { pieces, hanging, tilt })
+}
+
+/// A straight tube or bar.
+#[derive(Debug, Clone, Copy)]
+struct Tube {
+    /// Unit vector.
+    axis: DVec3,
+    through: DVec3,
+    radius: f64,
+    /// Its ends along the axis from `through`, mm.
+    ends: [f64; 2],
+}
+
+impl Tube {
+    fn end(&self, k: usize) -> DVec3 {
+        self.through + self.axis * self.ends[k]
+    }
+
+    /// Position along the axis, and distance from it, mm.
+    fn place(&self, p: DVec3) -> (f64, f64) {
+        let from = p - self.through;
+        let along = from.dot(self.axis);
+        (along, (from - self.axis * along).length())
+    }
+
+    /// Whether a point lies on it or in it.
+    fn has(&self, p: DVec3, slack: f64) -> bool {
+        let (along, away) = self.place(p);
+        away < self.radius * (1.0 + NEAR) && self.is_between(along, slack)
+    }
+
+    fn is_between(&self, along: f64, slack: f64) -> bool {
+        (self.ends[0] - slack..=self.ends[1] + slack).contains(&along)
+    }
+
+    /// Whether it stands on the table.
+    fn stands(&self, judge: &Judge, slack: f64) -> bool {
+        let lean = lies(if self.axis.z < 0.0 { -self.axis } else { self.axis });
+        let low = self.end(0).z.min(self.end(1).z) - self.radius * lean.to_radians().sin();
+        lean <= judge.settings.lean && low < slack
+    }
+
+    fn cylinder(&self, side: Side) -> Bound {
+        let to = |v: DVec3, places: f64| (v * places).round() / places + DVec3::ZERO;
+        Bound::Cylinder(Cylinder {
+            through: to(self.through, 1e3),
+            axis: to(self.axis, 1e6),
+            radius: (self.radius * 1e3).round() / 1e3 + THICKER,
+            side,
+            seam: 0.0,
+        })
+    }
+
+    /// The tubes that grow out of a carrier, each with its direction: this one if one of its ends lies there, or both its
+    /// halves if it crosses the carrier.
+    fn branches(&self, carrier: &Self, slack: f64) -> Vec<(Self, DVec3)> {
+        let (own, other) = nearest(self, carrier);
+        let at = carrier.through + carrier.axis * other;
+        let apart = at.distance(self.through + self.axis * own);
+        if apart > carrier.radius || !carrier.is_between(other, self.radius + slack) {
+            return Vec::new();
+        }
+        // Along the own axis, this far from the carrier's axis its surface may begin.
+        let sine = self.axis.cross(carrier.axis).length().max(FLATTEST);
+        let within = (carrier.radius + self.radius) / sine + slack;
+        let half = |ends: [f64; 2], up: DVec3| (Self { ends, ..*self }, up);
+        match self.ends.map(|end| (end - own).abs() < within) {
+            [true, false] => vec![half([own, self.ends[1]], self.axis)],
+            [false, true] => vec![half([self.ends[0], own], -self.axis)],
+            [true, true] => Vec::new(),
+            [false, false] if self.is_between(own, 0.0) => {
+                vec![half([own, self.ends[1]], self.axis), half([self.ends[0], own], -self.axis)]
+            }
+            [false, false] => Vec::new(),
+        }
+    }
+
+    /// Whether two tubes touch.
+    fn touches(&self, other: &Self) -> bool {
+        let (own, there) = nearest(self, other);
+        let own = self.through + self.axis * own.clamp(self.ends[0], self.ends[1]);
+        let there = other.through + other.axis * there.clamp(other.ends[0], other.ends[1]);
+        own.distance(there) < self.radius + other.radius
+    }
+}
+
+/// The positions along both axes where they are nearest to each other, mm.
+fn nearest(a: &Tube, b: &Tube) -> (f64, f64) {
+    let (between, across) = (b.through - a.through, a.axis.dot(b.axis));
+    let scale = 1.0 - across * across;
+    if scale < 1e-6 {
+        return (between.dot(a.axis), 0.0);
+    }
+    let (along_a, along_b) = (between.dot(a.axis), between.dot(b.axis));
+    ((along_a - across * along_b) / scale, (across * along_a - along_b) / scale)
+}
+
+/// A tube with the direction in which it grows, as a piece of the part.
+struct Placed {
+    tube: Tube,
+    up: DVec3,
+    /// Whether another tube carries it.
+    carried: bool,
+    piece: Piece,
+}
+
+impl Placed {
+    /// On the table, in level layers.
+    fn root(tube: Tube) -> Self {
+        let piece = Piece { chart: Chart::default(), within: vec![tube.cylinder(Side::Inner)], on_stock: false };
+        Self { tube, up: DVec3::Z, carried: false, piece }
+    }
+
+    /// On a carrier, and beside what was placed before in much the same direction.
+    fn on(carrier: &Tube, tube: Tube, up: DVec3, before: &[Self]) -> Self {
+        let (own, _) = nearest(&tube, carrier);
+        let start = Plane { origin: tube.through + tube.axis * own, up }.rounded();
+        // Cylinders are endless: one that grows the other way would take this side, too.
+        let beside = before.iter().filter(|other| other.carried && other.up.dot(up) > 0.0 && other.tube.touches(&tube));
+        let outside = std::iter::once(carrier).chain(beside.map(|other| &other.tube));
+        let outside = outside.map(|other| other.cylinder(Side::Outer));
+        let within = std::iter::once(tube.cylinder(Side::Inner)).chain(outside).collect();
+        Self { tube, up, carried: true, piece: Piece { chart: Chart::Plane(start), within, on_stock: false } }
+    }
+}
+
+/// Tubes on which the samples lie, those with most surface first.
+fn found(samples: &[Sample], mesh: &Mesh, judge: &Judge) -> Vec<Tube> {
+    let (mut left, mut tubes) = (samples.to_vec(), Vec::new());
+    let mut random = Random(1);
+    while tubes.len() < MOST {
+        let Some(tube) = largest(&left, judge, &mut random) else { break };
+        let Some((mut tube, on_it)) = refined(tube, &left, judge) else { break };
+        tube.radius = corners(&tube, mesh).fold(tube.radius, f64::max);
+        tubes.push(tube);
+        let mut number = 0;
+        left.retain(|_| {
+            number += 1;
+            !on_it[number - 1]
+        });
+    }
+    tubes
+}
+
+/// Distances from the axis of the corners of the facets that make up a tube, mm.
+fn corners(tube: &Tube, mesh: &Mesh) -> impl Iterator<Item = f64> {
+    let facets = mesh.triangles.iter().map(|triangle| triangle.map(|corner| mesh.vertices[corner as usize]));
+    let own = facets.filter(|[a, b, c]| {
+        let (normal, from) = ((b - a).cross(c - a), (a + b + c) / 3.0 - tube.through);
+        let out = from.reject_from_normalized(tube.axis);
+        normal.dot(out) > RADIAL * normal.length() * out.length()
+    });
+    own.flatten().map(|p| tube.place(p).1).filter(|away| (away / tube.radius - 1.0).abs() < NEAR)
+}
+
+/// The best of the cylinders through pairs of samples.
+fn largest(samples: &[Sample], judge: &Judge, random: &mut Random) -> Option<Tube> {
+    let pick = |random: &mut Random| samples.get(random.below(samples.len()));
+    let step = 1 + samples.len() / COUNTED;
+    let mut best: Option<(f64, Tube)> = None;
+    for _ in 0..PAIRS {
+        let (a, b) = (pick(random)?, pick(random)?);
+        let across = a.normal.cross(b.normal);
+        if across.length() < APART || a.place.distance(b.place) > NEIGHBOURS * judge.size {
+            continue;
+        }
+        let axis = across.normalize();
+        let Some((through, radius)) = centre(a, b, axis).filter(|(_, radius)| *radius < NEIGHBOURS * judge.size) else {
+            continue;
+        };
+        let tube = Tube { axis, through, radius, ends: [f64::NEG_INFINITY, f64::INFINITY] };
+        let counted = samples.iter().step_by(step).filter(|sample| is_on(&tube, sample));
+        let counted = area(counted);
+        if best.as_ref().is_none_or(|(most, _)| counted > *most) {
+            best = Some((counted, tube));
+        }
+    }
+    best.map(|(_, tube)| tube)
+}
+
+/// Where the normals of two samples meet, seen along an axis, and their distance from there if it is the same.
+fn centre(a: &Sample, b: &Sample, axis: DVec3) -> Option<(DVec3, f64)> {
+    let (u, v) = (axis.any_orthonormal_vector(), axis.cross(axis.any_orthonormal_vector()));
+    let flat = |p: DVec3| DVec2::new(u.dot(p), v.dot(p));
+    let ([p, q], [n, m]) = ([a.place, b.place].map(flat), [a.normal, b.normal].map(flat));
+    let turn = n.perp_dot(m);
+    let [first, second] = [(p - q).perp_dot(m) / turn, (p - q).perp_dot(n) / turn];
+    let radius = (first + second) / 2.0;
+    let fits = turn.abs() > 1e-9 && radius > 0.0 && (first - second).abs() < NEAR * radius;
+    let middle = p - n * first;
+    fits.then(|| (u * middle.x + v * middle.y, radius))
+}
+
+fn is_on(tube: &Tube, sample: &Sample) -> bool {
+    let from = (sample.place - tube.through).reject_from_normalized(tube.axis);
+    let away = from.length();
+    (away / tube.radius - 1.0).abs() < NEAR && sample.normal.dot(from) > RADIAL * away
+}
+
+/// A tube fitted to the samples on it, and which they are; `None` if they are too few, or not all around.
+fn refined(mut tube: Tube, samples: &[Sample], judge: &Judge) -> Option<(Tube, Vec<bool>)> {
+    for _ in 0..FITS {
+        let on_it: Vec<&Sample> = run(&tube, samples).into_iter().map(|k| &samples[k]).collect();
+        let normals = on_it.iter().fold(DMat3::ZERO, |sum, sample| {
+            let n = sample.normal * sample.area;
+            sum + DMat3::from_cols(n * sample.normal.x, n * sample.normal.y, n * sample.normal.z)
+        });
+        // The direction in which normals point least.
+        let others =
+            DMat3::from_diagonal(DVec3::splat(normals.x_axis.x + normals.y_axis.y + normals.z_axis.z)) - normals;
+        let axis = (0..POWERS).fold(tube.axis, |axis, _| (others * axis).normalize_or(axis));
+        let (u, v) = (axis.any_orthonormal_vector(), axis.cross(axis.any_orthonormal_vector()));
+        let flat = |p: DVec3| DVec2::new(u.dot(p), v.dot(p));
+        let faces: Vec<(DVec2, DVec2, f64)> = on_it
+            .iter()
+            .map(|sample| (flat(sample.place), flat(sample.normal).normalize_or_zero(), sample.area))
+            .collect();
+        let middle = middle(&faces, NEAR * tube.radius)?;
+        let weight: f64 = faces.iter().map(|(.., area)| area).sum();
+        let radius = faces.iter().map(|(p, _, area)| p.distance(middle) * area).sum::<f64>() / weight;
+        tube = Tube { axis, through: u * middle.x + v * middle.y, radius, ends: tube.ends };
+    }
+    let own = run(&tube, samples);
+    let along = own.iter().map(|k| tube.place(samples[*k].place).0);
+    tube.ends = along.fold([f64::MAX, f64::MIN], |[low, high], at| [low.min(at), high.max(at)]);
+    let (u, v) = (tube.axis.any_orthonormal_vector(), tube.axis.cross(tube.axis.any_orthonormal_vector()));
+    let mut sectors = [false; SECTORS];
+    for from in own.iter().map(|k| samples[*k].place - tube.through) {
+        let turn = DVec2::new(u.dot(from), v.dot(from)).to_angle() / std::f64::consts::TAU + 0.5;
+        sectors[((turn * SECTORS as f64) as usize).min(SECTORS - 1)] = true;
+    }
+    let round = sectors.iter().filter(|seen| **seen).count() as f64 / SECTORS as f64;
+    let seen = area(own.iter().map(|k| &samples[*k]));
+    let mut on_it = vec![false; samples.len()];
+    own.into_iter().for_each(|k| on_it[k] = true);
+    (round >= ROUND && seen > LEAST * judge.surface).then_some((tube, on_it))
+}
+
+/// The samples on a tube, as far as they lie along it without a gap: the stretch with most of them.
+fn run(tube: &Tube, samples: &[Sample]) -> Vec<usize> {
+    let on_it = (0..samples.len()).filter(|k| is_on(tube, &samples[*k]));
+    let mut along: Vec<(f64, usize)> = on_it.map(|k| (tube.place(samples[k].place).0, k)).collect();
+    along.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let runs = along.chunk_by(|a, b| b.0 - a.0 < GAP * tube.radius);
+    let most = |run: &&[(f64, usize)]| area(run.iter().map(|(_, k)| &samples[*k]));
+    let longest = runs.max_by(|a, b| most(a).total_cmp(&most(b)));
+    longest.unwrap_or_default().iter().map(|(_, k)| *k).collect()
+}
+
+/// A generator of numbers that are the same in every run (Lehmer).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 = self.0 * 48_271 % 0x7fff_ffff;
+        self.0 as usize % count.max(1)
+    }
+}

@@ -1,0 +1,144 @@
+//! Trees of round bars: the bars are found however the tree is turned, and the cylinders that part them lose nothing.
+
+use crate::directions::cut_out;
+use bead_part::chart::{Bound, Chart};
+use bead_part::directions::{Division, Settings, divisions};
+use bead_part::model::Mesh;
+use bead_part::model::solid::Solid;
+use bead_part::task::Task;
+use glam::{DQuat, DVec3};
+use planar::{DVec2, Polygon, Ring};
+use std::f64::consts::{PI, TAU};
+
+const SETTINGS: Settings = Settings { lean: 45.0, tilt: 90.0, bead: 7.0 };
+
+/// A bar from a point along a direction, with its radius and length, mm.
+#[derive(Clone, Copy)]
+struct Bar {
+    from: DVec3,
+    along: DVec3,
+    radius: f64,
+    length: f64,
+}
+
+impl Bar {
+    fn mesh(&self) -> Mesh {
+        let corner = |k: i32| DVec2::from_angle(TAU * f64::from(k) / 96.0) * self.radius;
+        let solid = Solid::extrude(&Polygon::simple(Ring::new((0..96).map(corner).collect())), 0.0, self.length);
+        let turn = DQuat::from_rotation_arc(DVec3::Z, self.along);
+        Mesh::from_triangles(solid.vertices.iter().map(|p| self.from + turn * *p).collect(), solid.triangles).0
+    }
+}
+
+/// A trunk with branches at these heights, angles to the vertical and around it, °, turned about z.
+fn tree(branches: &[(f64, f64, f64)], turned: f64) -> Vec<Bar> {
+    let trunk = Bar { from: DVec3::ZERO, along: DVec3::Z, radius: 18.0, length: 150.0 };
+    let branch = |(height, lean, around): &(f64, f64, f64)| {
+        let lean = DQuat::from_rotation_y(lean.to_radians()) * DVec3::Z;
+        let along = DQuat::from_rotation_z((around + turned).to_radians()) * lean;
+        Bar { from: DVec3::Z * *height, along, radius: 12.0, length: 110.0 }
+    };
+    std::iter::once(trunk).chain(branches.iter().map(branch)).collect()
+}
+
+/// The bars as one closed mesh: each branch begins on the trunk.
+fn united(bars: &[Bar]) -> Mesh {
+    let mut whole = bars[0].mesh();
+    // A little into the trunk, so that they are one.
+    let outside: Bound = "cylinder:axis=z,radius=17.5,side=outer".parse().unwrap();
+    bars[1..].iter().for_each(|bar| whole.add(outside.part_of(&bar.mesh())));
+    whole
+}
+
+fn found(mesh: &Mesh) -> Vec<Division> {
+    divisions(mesh, SETTINGS, &Task::new()).unwrap()
+}
+
+#[test]
+fn bars_that_branch_are_built_along_their_axes_at_any_angle() {
+    let trees: [&[(f64, f64, f64)]; 5] = [
+        &[(90.0, 90.0, 0.0)],
+        &[(60.0, 60.0, 0.0), (100.0, 60.0, 180.0)],
+        &[(70.0, 45.0, 20.0), (70.0, 80.0, 140.0), (80.0, 70.0, 260.0)],
+        &[(60.0, 88.0, 0.0), (60.0, 88.0, 180.0), (60.0, 88.0, 90.0), (60.0, 88.0, 270.0)],
+        &[(50.0, 55.0, 10.0), (100.0, 75.0, 70.0)],
+    ];
+    for (tree_number, branches) in trees.iter().enumerate() {
+        for turned in [0.0, 17.0, 90.0, 203.0] {
+            let bars = tree(branches, turned);
+            let found = found(&united(&bars));
+            let case = format!("tree {tree_number} at {turned}°");
+            let (best, level) = (&found[0], found.last().unwrap());
+            assert!(level.hanging > 500.0 && best.hanging < 200.0, "{case}: {} of {}", best.hanging, level.hanging);
+            assert_eq!(best.pieces.len(), bars.len(), "{case}: {best:?}");
+            assert!(best.pieces[0].chart.is_level(), "{case}");
+            for bar in &bars[1..] {
+                let near = best.pieces[1..].iter().any(|piece| match &piece.chart {
+                    Chart::Plane(plane) => plane.up.angle_between(bar.along).to_degrees() < 0.5,
+                    _ => false,
+                });
+                assert!(near, "{case}: {} is missing in {best:?}", bar.along);
+            }
+        }
+    }
+}
+
+/// The pieces are the whole part, and what two of them share is nothing.
+#[test]
+fn bars_are_parted_without_loss() {
+    for turned in [0.0, 31.0] {
+        let mesh = united(&tree(&[(70.0, 50.0, 20.0), (90.0, 90.0, 160.0)], turned));
+        let best = &found(&mesh)[0];
+        let pieces: Vec<Mesh> = best.pieces.iter().map(|piece| cut_out(&mesh, &piece.chart, &piece.within)).collect();
+        let volume: f64 = pieces.iter().map(Mesh::volume).sum();
+        // The branches reach half a millimetre into the trunk, where their metal counts twice.
+        assert!((volume / mesh.volume() - 1.0).abs() < 5e-3, "{volume} of {}", mesh.volume());
+        for (k, piece) in best.pieces.iter().enumerate() {
+            for other in &pieces[k + 1..] {
+                let common = cut_out(other, &piece.chart, &piece.within).volume();
+                assert!(common.abs() < 1e-3 * mesh.volume(), "{common} mm³ in two pieces");
+            }
+        }
+    }
+}
+
+/// Inside and outside of a cylinder are the whole, wherever it lies; and a bar across a bar has the volume of the integral.
+#[test]
+fn a_cylinder_parts_a_bar_in_two() {
+    let bar = Bar { from: DVec3::new(-60.0, 3.0, 20.0), along: DVec3::X, radius: 10.0, length: 120.0 };
+    for (radius, lean) in [(15.0, 0.0), (15.0, 40.0), (10.0, 0.0), (6.0, 25.0), (40.0, 10.0)] {
+        let axis = DQuat::from_rotation_y(f64::to_radians(lean)) * DVec3::Z;
+        let turn = DQuat::from_axis_angle(DVec3::new(0.3, 0.5, 0.8).normalize(), 1.1);
+        for turn in [DQuat::IDENTITY, turn] {
+            let mut mesh = bar.mesh();
+            mesh.vertices.iter_mut().for_each(|p| *p = turn * *p);
+            let (axis, through) = (turn * axis, turn * DVec3::new(5.0, 0.0, 20.0));
+            let part = |side: &str| {
+                let text = format!(
+                    "cylinder:axis={}/{}/{},through={}/{}/{},radius={radius},side={side}",
+                    axis.x, axis.y, axis.z, through.x, through.y, through.z
+                );
+                text.parse::<Bound>().unwrap().part_of(&mesh).volume()
+            };
+            let (inner, outer) = (part("inner"), part("outer"));
+            assert!(((inner + outer) / mesh.volume() - 1.0).abs() < 1e-3, "{radius} {lean}: {inner} {outer}");
+            if lean == 0.0 {
+                // Across the bar, y from its axis: the height of the bar there times the width of the cylinder.
+                let steps = 4000;
+                let slice = |k: i32| {
+                    let y = -10.0 + (f64::from(k) + 0.5) * 20.0 / f64::from(steps);
+                    let height = 2.0 * (100.0 - y * y).max(0.0).sqrt();
+                    let width = 2.0 * (radius * radius - (y + 3.0) * (y + 3.0)).max(0.0).sqrt();
+                    height * width * 20.0 / f64::from(steps)
+                };
+                let expected: f64 = (0..steps).map(slice).sum();
+                assert!((inner / expected - 1.0).abs() < 0.005, "{radius}: {inner} {expected}");
+            }
+        }
+    }
+    // A round hole through a plate is cut all around.
+    let plate = Bar { from: DVec3::ZERO, along: DVec3::Z, radius: 50.0, length: 8.0 }.mesh();
+    let rest: Bound = "cylinder:axis=z,through=4/2/0,radius=20,side=outer".parse().unwrap();
+    let volume = plate.volume() - PI * 400.0 * 8.0;
+    assert!((rest.part_of(&plate).volume() / volume - 1.0).abs() < 2e-3, "{} {volume}", rest.part_of(&plate).volume());
+}
