@@ -141,7 +141,7 @@ fn welded_twice(whole: &Mesh, bodies: &[Own<'_>]) -> Vec<String> {
         (volume > MISSING * whole.volume().abs()).then(|| {
             format!(
                 "Bodies \"{}\" and \"{}\" have {:.1} cm³ in common, around x {:.1} y {:.1} z {:.1} mm, which would be welded twice; \
-                 the second time, the torch would run into finished metal. Separate them by planes (within).",
+                 the second time, the torch would run into finished metal. Separate them by planes or cylinders (within).",
                 own.body.name,
                 other.body.name,
                 volume / 1e3,

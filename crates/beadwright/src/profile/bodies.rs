@@ -1,7 +1,7 @@
 //! Bodies that a part is welded as, one after another, each with layers of its own kind (`[[layers.bodies]]`).
 
 use super::{Predict, Profile};
-use crate::chart::{self, Chart, Plane};
+use crate::chart::{self, Bound, Chart};
 use crate::directions::{Division, Piece};
 use crate::fill::StrategyName;
 use crate::model::{Mesh, Object, Solids};
@@ -20,11 +20,11 @@ pub struct Body {
     #[serde(default, skip_serializing_if = "Chart::is_level")]
     #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub chart: Chart,
-    /// Planes such as `up=0/0/-1,through=0/0/60`: the body is the part of the model above all of them, and above its
-    /// first layer.
+    /// Planes such as `up=0/0/-1,through=0/0/60` and cylinders such as `cylinder:axis=z,radius=15,side=outer`: the body is
+    /// the part of the model above all planes, inside or outside all cylinders, and above its first layer.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
-    pub within: Vec<Plane>,
+    pub within: Vec<Bound>,
     /// The solids that make up this body, where a model has several: each by a point on it (`x/y/z`, mm, as the part stands), or by the
     /// name of its object in the model. All of them if left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -161,8 +161,8 @@ impl Body {
                 body.chart
             ));
             if !body.within.is_empty() {
-                let planes: Vec<String> = body.within.iter().map(|plane| format!("\"{plane}\"")).collect();
-                text.push_str(&format!("within = [{}]\n", planes.join(", ")));
+                let bounds: Vec<String> = body.within.iter().map(|bound| format!("\"{bound}\"")).collect();
+                text.push_str(&format!("within = [{}]\n", bounds.join(", ")));
             }
             if !body.solids.is_empty() {
                 let solids: Vec<String> = body.solids.iter().cloned().map(String::from).collect();
@@ -213,16 +213,16 @@ impl Body {
     /// body's first layer.
     pub fn of_mesh(&self, mesh: &Mesh) -> Mesh {
         let first = match &self.chart {
-            Chart::Plane(plane) if !self.chart.is_level() => Some(plane),
+            Chart::Plane(plane) if !self.chart.is_level() => Some(Bound::Plane(*plane)),
             _ => None,
         };
         let whole = self.solids_of(mesh).into_owned();
-        self.within.iter().chain(first).fold(whole, |rest, plane| plane.above(&rest))
+        self.within.iter().chain(&first).fold(whole, |rest, bound| bound.part_of(&rest))
     }
 
-    /// Whether a place of the part belongs to it by its chart and planes; its solids are ignored.
+    /// Whether a place of the part belongs to it by its chart and bounds; its solids are ignored.
     pub fn has(&self, p: DVec3) -> bool {
-        self.chart.coordinates(p).z >= 0.0 && self.within.iter().all(|plane| plane.coordinates(p).z >= 0.0)
+        self.chart.coordinates(p).z >= 0.0 && self.within.iter().all(|bound| bound.height(p) >= 0.0)
     }
 }
 

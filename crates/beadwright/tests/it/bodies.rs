@@ -179,7 +179,7 @@ fn a_forked_tube_is_welded_whole_at_any_angle() {
         // Every bead lies in its body.
         for layer in &plan.layers {
             let body = &profile.layers.bodies[layer.body];
-            let outside = |p: &DVec3| body.within.iter().any(|plane| (*p - plane.origin).dot(plane.up) < -3.0);
+            let outside = |p: &DVec3| body.within.iter().any(|bound| bound.height(*p) < -3.0);
             assert_eq!(beads(layer, &profile).find(outside), None, "{degrees}: layer {}", layer.index + 1);
         }
     }
@@ -318,8 +318,8 @@ fn errors_name_the_body() {
     let text = "[[body]]\nname = \"a\"\n\n[[body]]\nchart = \"plane\"\n";
     let error = Body::read(text).unwrap_err().to_string();
     assert!(error.contains("name") && error.contains('4'), "{error}");
-    let error = Body::read("[[body]]\nname = \"a\"\nwithin = [\"cylinder:radius=3\"]\n").unwrap_err().to_string();
-    assert!(error.contains("is no plane"), "{error}");
+    let error = Body::read("[[body]]\nname = \"a\"\nwithin = [\"cone:angle=30\"]\n").unwrap_err().to_string();
+    assert!(error.contains("bounds nothing"), "{error}");
 }
 
 /// Checks look at each body by itself, as they look at a part.
