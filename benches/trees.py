@@ -12,6 +12,8 @@ import manifold3d, numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 APART = 25.0
+# A bar has room for a bead of 7.5 mm on both sides of its axis.
+THINNEST = 7.6
 
 
 def square_to(way):
@@ -44,7 +46,7 @@ def tree(seed):
         start, way, radius, length = bars[k]
         lean, around = np.radians(random.uniform(30, 90)), random.uniform(0, 2 * np.pi)
         own = square_to(way) @ [np.sin(lean) * np.cos(around), np.sin(lean) * np.sin(around), np.cos(lean)]
-        thick = radius * random.uniform(0.55, 0.8)
+        thick = max(radius * random.uniform(0.55, 0.8), THINNEST)
         new = (start + way * random.uniform(0.35, 0.85) * length, own, thick, random.uniform(60, 110) + radius / np.sin(lean))
         free = all(between(new, other) > thick + other[2] + APART for j, other in enumerate(bars) if j != k)
         if own[2] > 0.02 and new[0][2] - thick > 12 and free:

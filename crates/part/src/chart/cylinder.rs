@@ -42,6 +42,11 @@ impl Side {
 }
 
 impl Cylinder {
+    /// Angle of a point about the axis, from half a turn beyond the seam, °.
+    pub fn angle(&self, p: DVec3) -> f64 {
+        self.around(p).angle.to_degrees()
+    }
+
     fn axes(&self) -> Axes {
         Axes::new(self.axis, self.seam.to_radians())
     }

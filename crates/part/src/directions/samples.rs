@@ -22,7 +22,7 @@ pub(super) fn area<'a>(samples: impl Iterator<Item = &'a Sample>) -> f64 {
 }
 
 /// Samples are divided until their edges are shorter than this fraction of the part's size.
-const FINE: f64 = 0.03;
+pub(super) const FINE: f64 = 0.03;
 
 /// The surface of a mesh, divided into samples with edges shorter than [`FINE`] times `size` (mm).
 pub(super) fn samples(mesh: &Mesh, size: f64) -> Vec<Sample> {

@@ -1,11 +1,12 @@
 //! Straight tubes and bars that branch: each is built along its own axis, and begins on the one that carries it.
 //!
 //! Cylinders are found by pairs of surface samples, whose normals both meet the axis (as in RANSAC by Schnabel et al.
-//! 2007), and made better by all the samples that lie on them. A branch is what lies inside its own cylinder and outside
-//! that of the tube that carries it, so its first layers end on that tube.
+//! 2007), and made better by all the samples that lie on them. Layers of a branch lie around the tube that carries it,
+//! which the first of them covers from edge to edge; a branch that leans too much along its carrier gets layers square to
+//! itself, outside the carrier's cylinder.
 
 use super::around::middle;
-use super::samples::{Sample, area};
+use super::samples::{FINE, Sample, area};
 use super::ways::{Judge, lies};
 use super::{Division, Piece, State};
 use crate::chart::{Bound, Chart, Cylinder, Plane, Side};
@@ -67,7 +68,7 @@ pub(super) fn tubes(whole: &State, judge: &Judge) -> Option<Division> {
     while let Some(carrier) = placed.get(next).map(|own| own.tube) {
         let carried: Vec<Tube> = open.extract_if(.., |tube| !tube.branches(&carrier, slack).is_empty()).collect();
         for (tube, up) in carried.iter().flat_map(|tube| tube.branches(&carrier, slack)) {
-            let own = Placed::on(&carrier, tube, up, &placed);
+            let own = Placed::on(&carrier, tube, up, &placed, judge);
             placed.push(own);
         }
         next += 1;
@@ -75,10 +76,10 @@ pub(super) fn tubes(whole: &State, judge: &Judge) -> Option<Division> {
     if placed.is_empty() || !open.is_empty() {
         return None;
     }
-    let tilt = placed.iter().map(|own| own.piece.tilt()).fold(0.0, f64::max);
+    let tilt = placed.iter().map(|own| own.tilt).fold(0.0, f64::max);
     let hangs = |sample: &&Sample| {
         let own = placed.iter().find(|own| own.piece.has(sample.place, OVER));
-        !judge.stands(sample, judge.table()) && own.is_none_or(|own| judge.hangs(sample, own.up))
+        !judge.stands(sample, judge.table()) && own.is_none_or(|own| judge.hangs(sample, own.stacked(sample.place)))
     };
     let hanging = area(whole.samples.iter().filter(hangs));
     let pieces = placed.into_iter().map(|own| own.piece).collect();
@@ -137,6 +138,15 @@ impl Tube {
         })
     }
 
+    /// Layers around it, cut open on the other side than this one.
+    fn around(&self, side: DVec3) -> Chart {
+        let Bound::Cylinder(own) = self.cylinder(Side::Outer) else { return Chart::default() };
+        let own = Cylinder { radius: own.radius - THICKER, ..own };
+        // Seen from a seam at 0, the angle of what lies half a turn away from it is 0.
+        let seam = own.angle(self.through + side * self.radius).rem_euclid(360.0).round();
+        Chart::Cylinder(Cylinder { seam, ..own })
+    }
+
     /// The tubes that grow out of a carrier, each with its direction: this one if one of its ends lies there, or both its
     /// halves if it crosses the carrier.
     fn branches(&self, carrier: &Self, slack: f64) -> Vec<(Self, DVec3)> {
@@ -181,12 +191,15 @@ fn nearest(a: &Tube, b: &Tube) -> (f64, f64) {
     ((along_a - across * along_b) / scale, (across * along_a - along_b) / scale)
 }
 
-/// A tube with the direction in which it grows, as a piece of the part.
+/// A tube as a piece of the part.
 struct Placed {
     tube: Tube,
+    /// The direction in which it grows.
     up: DVec3,
     /// Whether another tube carries it.
     carried: bool,
+    /// Angle between the direction in which its layers are stacked and the vertical, °.
+    tilt: f64,
     piece: Piece,
 }
 
@@ -194,19 +207,38 @@ impl Placed {
     /// On the table, in level layers.
     fn root(tube: Tube) -> Self {
         let piece = Piece { chart: Chart::default(), within: vec![tube.cylinder(Side::Inner)], on_stock: false };
-        Self { tube, up: DVec3::Z, carried: false, piece }
+        Self { tube, up: DVec3::Z, carried: false, tilt: 0.0, piece }
     }
 
-    /// On a carrier, and beside what was placed before in much the same direction.
-    fn on(carrier: &Tube, tube: Tube, up: DVec3, before: &[Self]) -> Self {
-        let (own, _) = nearest(&tube, carrier);
-        let start = Plane { origin: tube.through + tube.axis * own, up }.rounded();
+    /// On a carrier, and beside what was placed before in much the same direction. Layers lie around the carrier if the
+    /// tube leans no more from them than a wall may: the first is then as wide as all others. Otherwise they are square to
+    /// the tube.
+    fn on(carrier: &Tube, tube: Tube, up: DVec3, before: &[Self], judge: &Judge) -> Self {
+        let (own, other) = nearest(&tube, carrier);
+        let start = tube.through + tube.axis * own;
         // Cylinders are endless: one that grows the other way would take this side, too.
         let beside = before.iter().filter(|other| other.carried && other.up.dot(up) > 0.0 && other.tube.touches(&tube));
-        let outside = std::iter::once(carrier).chain(beside.map(|other| &other.tube));
-        let outside = outside.map(|other| other.cylinder(Side::Outer));
-        let within = std::iter::once(tube.cylinder(Side::Inner)).chain(outside).collect();
-        Self { tube, up, carried: true, piece: Piece { chart: Chart::Plane(start), within, on_stock: false } }
+        let outside = beside.map(|other| other.tube.cylinder(Side::Outer));
+        let within = std::iter::once(tube.cylinder(Side::Inner)).chain(outside);
+        let away = up.reject_from_normalized(carrier.axis);
+        let leans = away.angle_between(up).to_degrees() <= judge.settings.lean;
+        let (chart, last, along) = if leans && lies(away) <= judge.settings.tilt + UPRIGHT {
+            let side = away.normalize();
+            let half = Plane { origin: carrier.through + carrier.axis * other, up: side }.rounded();
+            (carrier.around(side), Bound::Plane(half), side)
+        } else {
+            (Chart::Plane(Plane { origin: start, up }.rounded()), carrier.cylinder(Side::Outer), up)
+        };
+        let within = within.chain([last]).collect();
+        Self { tube, up, carried: true, tilt: lies(along), piece: Piece { chart, within, on_stock: false } }
+    }
+
+    /// The direction in which its layers are stacked at a point.
+    fn stacked(&self, p: DVec3) -> DVec3 {
+        match &self.piece.chart {
+            Chart::Cylinder(around) => (p - around.through).reject_from_normalized(around.axis).normalize_or(self.up),
+            _ => self.up,
+        }
     }
 }
 
@@ -285,8 +317,9 @@ fn is_on(tube: &Tube, sample: &Sample) -> bool {
 
 /// A tube fitted to the samples on it, and which they are; `None` if they are too few, or not all around.
 fn refined(mut tube: Tube, samples: &[Sample], judge: &Judge) -> Option<(Tube, Vec<bool>)> {
+    let gap = 2.0 * FINE * judge.size;
     for _ in 0..FITS {
-        let on_it: Vec<&Sample> = run(&tube, samples).into_iter().map(|k| &samples[k]).collect();
+        let on_it: Vec<&Sample> = run(&tube, samples, gap).into_iter().map(|k| &samples[k]).collect();
         let normals = on_it.iter().fold(DMat3::ZERO, |sum, sample| {
             let n = sample.normal * sample.area;
             sum + DMat3::from_cols(n * sample.normal.x, n * sample.normal.y, n * sample.normal.z)
@@ -306,7 +339,7 @@ fn refined(mut tube: Tube, samples: &[Sample], judge: &Judge) -> Option<(Tube, V
         let radius = faces.iter().map(|(p, _, area)| p.distance(middle) * area).sum::<f64>() / weight;
         tube = Tube { axis, through: u * middle.x + v * middle.y, radius, ends: tube.ends };
     }
-    let own = run(&tube, samples);
+    let own = run(&tube, samples, gap);
     let along = own.iter().map(|k| tube.place(samples[*k].place).0);
     tube.ends = along.fold([f64::MAX, f64::MIN], |[low, high], at| [low.min(at), high.max(at)]);
     let (u, v) = (tube.axis.any_orthonormal_vector(), tube.axis.cross(tube.axis.any_orthonormal_vector()));
@@ -322,12 +355,12 @@ fn refined(mut tube: Tube, samples: &[Sample], judge: &Judge) -> Option<(Tube, V
     (round >= ROUND && seen > LEAST * judge.surface).then_some((tube, on_it))
 }
 
-/// The samples on a tube, as far as they lie along it without a gap: the stretch with most of them.
-fn run(tube: &Tube, samples: &[Sample]) -> Vec<usize> {
+/// The samples on a tube, as far as they lie along it without a gap (mm at least): the stretch with most of them.
+fn run(tube: &Tube, samples: &[Sample], gap: f64) -> Vec<usize> {
     let on_it = (0..samples.len()).filter(|k| is_on(tube, &samples[*k]));
     let mut along: Vec<(f64, usize)> = on_it.map(|k| (tube.place(samples[k].place).0, k)).collect();
     along.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let runs = along.chunk_by(|a, b| b.0 - a.0 < GAP * tube.radius);
+    let runs = along.chunk_by(|a, b| b.0 - a.0 < gap.max(GAP * tube.radius));
     let most = |run: &&[(f64, usize)]| area(run.iter().map(|(_, k)| &samples[*k]));
     let longest = runs.max_by(|a, b| most(a).total_cmp(&most(b)));
     longest.unwrap_or_default().iter().map(|(_, k)| *k).collect()

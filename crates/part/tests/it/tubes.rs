@@ -1,8 +1,8 @@
 //! Trees of round bars: the bars are found however the tree is turned, and the cylinders that part them lose nothing.
 
 use crate::directions::cut_out;
-use bead_part::chart::{Bound, Chart};
-use bead_part::directions::{Division, Settings, divisions};
+use bead_part::chart::Bound;
+use bead_part::directions::{Division, Piece, Settings, divisions};
 use bead_part::model::Mesh;
 use bead_part::model::solid::Solid;
 use bead_part::task::Task;
@@ -64,7 +64,7 @@ fn bars_that_branch_are_built_along_their_axes_at_any_angle() {
         &[(50.0, 55.0, 10.0), (100.0, 75.0, 70.0)],
     ];
     for (tree_number, branches) in trees.iter().enumerate() {
-        for turned in [0.0, 17.0, 90.0, 203.0] {
+        for turned in [0.0, 17.0 + 93.0 * tree_number as f64] {
             let bars = tree(branches, turned);
             let found = found(&united(&bars));
             let case = format!("tree {tree_number} at {turned}°");
@@ -73,11 +73,15 @@ fn bars_that_branch_are_built_along_their_axes_at_any_angle() {
             assert_eq!(best.pieces.len(), bars.len(), "{case}: {best:?}");
             assert!(best.pieces[0].chart.is_level(), "{case}");
             for bar in &bars[1..] {
-                let near = best.pieces[1..].iter().any(|piece| match &piece.chart {
-                    Chart::Plane(plane) => plane.up.angle_between(bar.along).to_degrees() < 0.5,
-                    _ => false,
+                // Its own cylinder comes first.
+                let near = best.pieces[1..].iter().any(|piece| match &piece.within[0] {
+                    Bound::Cylinder(own) => own.axis.cross(bar.along).length().asin().to_degrees() < 0.5,
+                    Bound::Plane(_) => false,
                 });
                 assert!(near, "{case}: {} is missing in {best:?}", bar.along);
+                let tip = bar.from + bar.along * 0.9 * bar.length;
+                let has = |piece: &&Piece| piece.within.iter().all(|bound| bound.height(tip) > 0.0);
+                assert_eq!(best.pieces.iter().filter(has).count(), 1, "{case}: the tip at {tip}");
             }
         }
     }
