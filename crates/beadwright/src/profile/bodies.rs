@@ -25,6 +25,10 @@ pub struct Body {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "schema", schemars(with = "Vec<String>"))]
     pub within: Vec<Bound>,
+    /// More lists like `within`: what lies within all bounds of one of them belongs to the body, too.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "schema", schemars(with = "Vec<Vec<String>>"))]
+    pub also: Vec<Vec<Bound>>,
     /// The solids that make up this body, where a model has several: each by a point on it (`x/y/z`, mm, as the part stands), or by the
     /// name of its object in the model. All of them if left out.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -128,6 +132,7 @@ impl Body {
             name: name.to_owned(),
             chart,
             within: Vec::new(),
+            also: Vec::new(),
             solids: Vec::new(),
             on_stock: false,
             strategy: None,
@@ -144,6 +149,7 @@ impl Body {
         };
         let body = |(k, piece): (usize, &Piece)| Self {
             within: piece.within.clone(),
+            also: piece.also.clone(),
             on_stock: piece.on_stock,
             ..Self::of(&name(k), piece.chart.clone())
         };
@@ -161,8 +167,11 @@ impl Body {
                 body.chart
             ));
             if !body.within.is_empty() {
-                let bounds: Vec<String> = body.within.iter().map(|bound| format!("\"{bound}\"")).collect();
-                text.push_str(&format!("within = [{}]\n", bounds.join(", ")));
+                text.push_str(&format!("within = {}\n", listed(&body.within)));
+            }
+            if !body.also.is_empty() {
+                let also: Vec<String> = body.also.iter().map(|bounds| listed(bounds)).collect();
+                text.push_str(&format!("also = [{}]\n", also.join(", ")));
             }
             if !body.solids.is_empty() {
                 let solids: Vec<String> = body.solids.iter().cloned().map(String::from).collect();
@@ -217,13 +226,24 @@ impl Body {
             _ => None,
         };
         let whole = self.solids_of(mesh).into_owned();
-        self.within.iter().chain(&first).fold(whole, |rest, bound| bound.part_of(&rest))
+        let part =
+            |bounds: &Vec<Bound>| bounds.iter().chain(&first).fold(whole.clone(), |rest, bound| bound.part_of(&rest));
+        let mut own = part(&self.within);
+        self.also.iter().for_each(|bounds| own.add(part(bounds)));
+        own
     }
 
     /// Whether a place of the part belongs to it by its chart and bounds; its solids are ignored.
     pub fn has(&self, p: DVec3) -> bool {
-        self.chart.coordinates(p).z >= 0.0 && self.within.iter().all(|bound| bound.height(p) >= 0.0)
+        let within = |bounds: &Vec<Bound>| bounds.iter().all(|bound| bound.height(p) >= 0.0);
+        self.chart.coordinates(p).z >= 0.0 && (within(&self.within) || self.also.iter().any(within))
     }
+}
+
+/// Bounds as a list of TOML.
+fn listed(bounds: &[Bound]) -> String {
+    let bounds: Vec<String> = bounds.iter().map(|bound| format!("\"{bound}\"")).collect();
+    format!("[{}]", bounds.join(", "))
 }
 
 impl Profile {

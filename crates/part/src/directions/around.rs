@@ -40,7 +40,7 @@ pub(super) fn around(whole: &State, judge: &Judge) -> Option<Division> {
         side: Side::Outer,
         seam: SEAM,
     });
-    let piece = Piece { chart, within: Vec::new(), on_stock: true };
+    let piece = Piece { chart, within: Vec::new(), also: Vec::new(), on_stock: true };
     // All around a horizontal axis, layers also hang overhead.
     let lies = lies(hub.axis);
     let tilt = 90.0 + lies.min(180.0 - lies);

@@ -80,7 +80,7 @@ fn pieces(groups: &[Group], plane: Plane, cuts: &[Plane]) -> Option<Vec<Piece>> 
         let first = if square { plane } else { Plane { origin: group.up * lowest, up: group.up } };
         let planes = cuts.iter().copied().chain((!square).then_some(plane)).chain(parted);
         let within = planes.map(Bound::Plane).collect();
-        Some(Piece { chart: Chart::Plane(first.rounded()), within, on_stock: false })
+        Some(Piece { chart: Chart::Plane(first.rounded()), within, also: Vec::new(), on_stock: false })
     };
     groups.iter().enumerate().map(piece).collect()
 }

@@ -63,6 +63,8 @@ pub struct Piece {
     pub chart: Chart,
     /// The piece is what lies within these bounds and above the start of its first layer.
     pub within: Vec<Bound>,
+    /// What lies within all bounds of one of these belongs to it, too.
+    pub also: Vec<Vec<Bound>>,
     /// Whether its first layer lies on metal that is there already, such as a turned hub.
     pub on_stock: bool,
 }
@@ -185,7 +187,7 @@ fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Option
     // The ends of a middle line are slightly inaccurate.
     let tilt = if (tilt - 90.0).abs() < SLACK { 90.0 } else { tilt };
     let chart = Chart::Guide(Arc::new(guide));
-    let piece = Piece { chart, within: Vec::new(), on_stock: false };
+    let piece = Piece { chart, within: Vec::new(), also: Vec::new(), on_stock: false };
     let fits = tilt <= judge.settings.tilt && hanging < BETTER * whole.hanging[0];
     Ok(fits.then(|| Division { pieces: vec![piece], hanging, tilt }))
 }
@@ -224,7 +226,7 @@ impl State {
     fn division(self) -> Division {
         let tilt = self.pieces.iter().map(Piece::tilt).fold(0.0, f64::max);
         let within = self.cuts.into_iter().map(Bound::Plane).collect();
-        let trunk = Piece { chart: Chart::default(), within, on_stock: false };
+        let trunk = Piece { chart: Chart::default(), within, also: Vec::new(), on_stock: false };
         let pieces = std::iter::once(trunk).chain(self.pieces.into_iter().rev()).collect();
         Division { pieces, hanging: self.hanging.iter().sum(), tilt }
     }
@@ -245,7 +247,8 @@ impl Division {
 impl Piece {
     /// Whether a point lies in it, or no farther than `over` (mm) outside.
     fn has(&self, p: DVec3, over: f64) -> bool {
-        self.chart.coordinates(p).z >= -over && self.within.iter().all(|bound| bound.height(p) >= -over)
+        let within = |bounds: &Vec<Bound>| bounds.iter().all(|bound| bound.height(p) >= -over);
+        self.chart.coordinates(p).z >= -over && (within(&self.within) || self.also.iter().any(within))
     }
 
     /// Angle between its direction and the vertical, °.

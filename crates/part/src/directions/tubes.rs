@@ -1,9 +1,9 @@
 //! Straight tubes and bars that branch: each is built along its own axis, and begins on the one that carries it.
 //!
 //! Cylinders are found by pairs of surface samples, whose normals both meet the axis (as in RANSAC by Schnabel et al.
-//! 2007), and made better by all the samples that lie on them. Layers of a branch lie around the tube that carries it,
-//! which the first of them covers from edge to edge; a branch that leans too much along its carrier gets layers square to
-//! itself, outside the carrier's cylinder.
+//! 2007), and made better by all the samples that lie on them. A branch goes on in the layers of the tube that carries it
+//! if it leans no more from them than a wall may. Otherwise its layers lie around that tube, so that the first is as wide
+//! as all others.
 
 use super::around::middle;
 use super::samples::{FINE, Sample, area};
@@ -62,27 +62,25 @@ pub(super) fn tubes(whole: &State, judge: &Judge) -> Option<Division> {
     if open.len() < 2 || area(whole.samples.iter().filter(is_else)) > ELSE * judge.surface {
         return None;
     }
-    let roots: Vec<Tube> = open.extract_if(.., |tube| tube.stands(judge, slack)).collect();
-    let mut placed: Vec<Placed> = roots.into_iter().map(Placed::root).collect();
+    let mut tree = Tree::default();
+    open.extract_if(.., |tube| tube.stands(judge, slack)).for_each(|root| tree.plant(root));
     let mut next = 0;
-    while let Some(carrier) = placed.get(next).map(|own| own.tube) {
-        let carried: Vec<Tube> = open.extract_if(.., |tube| !tube.branches(&carrier, slack).is_empty()).collect();
-        for (tube, up) in carried.iter().flat_map(|tube| tube.branches(&carrier, slack)) {
-            let own = Placed::on(&carrier, tube, up, &placed, judge);
-            placed.push(own);
+    while let Some(carrier) = tree.grown.get(next).copied() {
+        let carried: Vec<Tube> = open.extract_if(.., |tube| !tube.branches(&carrier.tube, slack).is_empty()).collect();
+        for (tube, up) in carried.iter().flat_map(|tube| tube.branches(&carrier.tube, slack)) {
+            tree.grow(&carrier, tube, up, judge);
         }
         next += 1;
     }
-    if placed.is_empty() || !open.is_empty() {
+    let Tree { pieces, tilt, .. } = tree;
+    if pieces.is_empty() || !open.is_empty() {
         return None;
     }
-    let tilt = placed.iter().map(|own| own.tilt).fold(0.0, f64::max);
     let hangs = |sample: &&Sample| {
-        let own = placed.iter().find(|own| own.piece.has(sample.place, OVER));
-        !judge.stands(sample, judge.table()) && own.is_none_or(|own| judge.hangs(sample, own.stacked(sample.place)))
+        let own = pieces.iter().find(|piece| piece.has(sample.place, OVER));
+        !judge.stands(sample, judge.table()) && own.is_none_or(|own| judge.hangs(sample, stacked(own, sample.place)))
     };
     let hanging = area(whole.samples.iter().filter(hangs));
-    let pieces = placed.into_iter().map(|own| own.piece).collect();
     let fits = tilt <= judge.settings.tilt + UPRIGHT && BETTER * hanging < whole.hanging[0];
     fits.then_some(Division { pieces, hanging, tilt })
 }
@@ -191,54 +189,79 @@ fn nearest(a: &Tube, b: &Tube) -> (f64, f64) {
     ((along_a - across * along_b) / scale, (across * along_a - along_b) / scale)
 }
 
-/// A tube as a piece of the part.
-struct Placed {
+/// A tube in its place.
+#[derive(Clone, Copy)]
+struct Grown {
     tube: Tube,
     /// The direction in which it grows.
     up: DVec3,
     /// Whether another tube carries it.
     carried: bool,
-    /// Angle between the direction in which its layers are stacked and the vertical, °.
-    tilt: f64,
-    piece: Piece,
+    /// Index of the piece to which it belongs.
+    piece: usize,
 }
 
-impl Placed {
-    /// On the table, in level layers.
-    fn root(tube: Tube) -> Self {
-        let piece = Piece { chart: Chart::default(), within: vec![tube.cylinder(Side::Inner)], on_stock: false };
-        Self { tube, up: DVec3::Z, carried: false, tilt: 0.0, piece }
+/// Tubes on each other.
+#[derive(Default)]
+struct Tree {
+    grown: Vec<Grown>,
+    pieces: Vec<Piece>,
+    /// Largest angle between a direction in which layers are stacked and the vertical, °.
+    tilt: f64,
+}
+
+impl Tree {
+    /// A tube that stands on the table, in level layers.
+    fn plant(&mut self, tube: Tube) {
+        self.grown.push(Grown { tube, up: DVec3::Z, carried: false, piece: self.pieces.len() });
+        let within = vec![tube.cylinder(Side::Inner)];
+        self.pieces.push(Piece { chart: Chart::default(), within, also: Vec::new(), on_stock: false });
     }
 
-    /// On a carrier, and beside what was placed before in much the same direction. Layers lie around the carrier if the
-    /// tube leans no more from them than a wall may: the first is then as wide as all others. Otherwise they are square to
-    /// the tube.
-    fn on(carrier: &Tube, tube: Tube, up: DVec3, before: &[Self], judge: &Judge) -> Self {
-        let (own, other) = nearest(&tube, carrier);
+    /// A tube on a carrier, beside what has grown in much the same direction. A wall may lean: if the tube leans no more
+    /// from the layers of its carrier, it goes on in them; if it leans no more from layers around the carrier, it gets
+    /// those, whose first is as wide as all others. Otherwise its layers are square to it.
+    fn grow(&mut self, carrier: &Grown, tube: Tube, up: DVec3, judge: &Judge) {
+        let (own, other) = nearest(&tube, &carrier.tube);
         let start = tube.through + tube.axis * own;
+        let tip = start + up * (tube.ends[1] - tube.ends[0]);
         // Cylinders are endless: one that grows the other way would take this side, too.
-        let beside = before.iter().filter(|other| other.carried && other.up.dot(up) > 0.0 && other.tube.touches(&tube));
-        let outside = beside.map(|other| other.tube.cylinder(Side::Outer));
-        let within = std::iter::once(tube.cylinder(Side::Inner)).chain(outside);
-        let away = up.reject_from_normalized(carrier.axis);
-        let leans = away.angle_between(up).to_degrees() <= judge.settings.lean;
-        let (chart, last, along) = if leans && lies(away) <= judge.settings.tilt + UPRIGHT {
-            let side = away.normalize();
-            let half = Plane { origin: carrier.through + carrier.axis * other, up: side }.rounded();
-            (carrier.around(side), Bound::Plane(half), side)
+        let beside = |other: &&Grown| other.carried && other.up.dot(up) > 0.0 && other.tube.touches(&tube);
+        let outside = self.grown.iter().filter(beside).map(|other| other.tube.cylinder(Side::Outer));
+        let mut within: Vec<Bound> = std::iter::once(tube.cylinder(Side::Inner)).chain(outside).collect();
+        let leans = |way: DVec3| way.angle_between(up).to_degrees() > judge.settings.lean;
+        let (away, below) = (up.reject_from_normalized(carrier.tube.axis), &self.pieces[carrier.piece]);
+        let goes_on = ![start, tip].into_iter().any(|p| leans(stacked(below, p)));
+        let mut piece = self.pieces.len();
+        if goes_on {
+            // A little into the carrier, so that they are one.
+            let into = Tube { radius: carrier.tube.radius - 2.0 * THICKER, ..carrier.tube };
+            within.push(into.cylinder(Side::Outer));
+            piece = carrier.piece;
+            self.pieces[piece].also.push(within);
         } else {
-            (Chart::Plane(Plane { origin: start, up }.rounded()), carrier.cylinder(Side::Outer), up)
-        };
-        let within = within.chain([last]).collect();
-        Self { tube, up, carried: true, tilt: lies(along), piece: Piece { chart, within, on_stock: false } }
-    }
-
-    /// The direction in which its layers are stacked at a point.
-    fn stacked(&self, p: DVec3) -> DVec3 {
-        match &self.piece.chart {
-            Chart::Cylinder(around) => (p - around.through).reject_from_normalized(around.axis).normalize_or(self.up),
-            _ => self.up,
+            let around = !leans(away) && lies(away) <= judge.settings.tilt + UPRIGHT;
+            let side = if around { away.normalize() } else { up };
+            let (chart, last) = if around {
+                let half = Plane { origin: carrier.tube.through + carrier.tube.axis * other, up: side };
+                (carrier.tube.around(side), Bound::Plane(half.rounded()))
+            } else {
+                (Chart::Plane(Plane { origin: start, up }.rounded()), carrier.tube.cylinder(Side::Outer))
+            };
+            within.push(last);
+            self.tilt = self.tilt.max(lies(side));
+            self.pieces.push(Piece { chart, within, also: Vec::new(), on_stock: false });
         }
+        self.grown.push(Grown { tube, up, carried: true, piece });
+    }
+}
+
+/// The direction in which the layers of a piece are stacked at a point.
+fn stacked(piece: &Piece, p: DVec3) -> DVec3 {
+    match &piece.chart {
+        Chart::Plane(plane) => plane.up,
+        Chart::Cylinder(around) => (p - around.through).reject_from_normalized(around.axis).normalize_or(DVec3::Z),
+        _ => DVec3::Z,
     }
 }
 

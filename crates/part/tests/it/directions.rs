@@ -41,7 +41,7 @@ fn found(mesh: &Mesh, settings: Settings) -> Vec<Division> {
 }
 
 /// What of a part a piece consists of.
-pub(crate) fn cut_out(mesh: &Mesh, chart: &Chart, within: &[Bound]) -> Mesh {
+fn cut_out(mesh: &Mesh, chart: &Chart, within: &[Bound]) -> Mesh {
     let Chart::Plane(first) = *chart else { panic!("{chart}") };
     within.iter().chain([&Bound::Plane(first)]).fold(mesh.clone(), |rest, bound| bound.part_of(&rest))
 }
