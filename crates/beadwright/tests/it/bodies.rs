@@ -4,6 +4,7 @@
 use crate::common;
 
 use beadwright::as_built::as_built;
+use beadwright::chart::Bound;
 use beadwright::directions::{Settings, divisions};
 use beadwright::layer::Layer;
 use beadwright::model::{Import, Mesh, Object, Part, RepairReport, solid::Solid};
@@ -181,6 +182,51 @@ fn a_forked_tube_is_welded_whole_at_any_angle() {
             let body = &profile.layers.bodies[layer.body];
             let outside = |p: &DVec3| body.within.iter().any(|bound| bound.height(*p) < -3.0);
             assert_eq!(beads(layer, &profile).find(outside), None, "{degrees}: layer {}", layer.index + 1);
+        }
+    }
+}
+
+/// A trunk with two branches, found and welded: the first layer of a branch lies on the trunk, and all beads in their bodies.
+#[test]
+fn bars_that_branch_are_welded_on_the_bar_that_carries_them() {
+    let settings = Settings { lean: 45.0, tilt: 90.0, bead: 7.54 };
+    for turned in [0.0_f64, 64.0] {
+        let bar = |radius: f64, length: f64, turn: DMat3, from: DVec3| {
+            let corner = |k: i32| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / 64.0) * radius;
+            let outline = Polygon::simple(Ring::new((0..64).map(corner).collect()));
+            let Solid { vertices, triangles } = Solid::extrude(&outline, 0.0, length);
+            Mesh::from_triangles(vertices.into_iter().map(|p| from + turn * p).collect(), triangles).0
+        };
+        let branch = |lean: f64, around: f64| {
+            DMat3::from_rotation_z((around + turned).to_radians()) * DMat3::from_rotation_y(lean.to_radians())
+        };
+        let mut mesh = bar(18.0, 130.0, DMat3::IDENTITY, DVec3::ZERO);
+        // A little into the trunk, so that they are one.
+        let outside: Bound = "cylinder:axis=z,radius=17.5,side=outer".parse().unwrap();
+        for (turn, height) in [(branch(90.0, 0.0), 60.0), (branch(60.0, 150.0), 80.0)] {
+            mesh.add(outside.part_of(&bar(12.0, 90.0, turn, DVec3::Z * height)));
+        }
+        let found = divisions(&mesh, settings, &Task::new()).unwrap();
+        let mut profile = profile("cmt-al2319-kuka");
+        profile.layers.bodies = Body::of_division("tree", &found[0]);
+        assert_eq!(profile.layers.bodies.len(), 3, "{turned}: {:?}", profile.layers.bodies);
+        // As it is written and read.
+        profile.layers.bodies = Body::read(&Body::write(&profile.layers.bodies)).unwrap();
+        let plan = planned(&mesh, &profile).unwrap();
+        assert!(plan.summary.forbidden.is_empty(), "{turned}: {:?}", plan.summary.forbidden);
+        let metrics = &plan.summary.metrics;
+        let (laid, part) = (metrics.deposited_volume_mm3, mesh.volume());
+        assert!((laid / part - 1.0).abs() < 0.03, "{turned}: {laid} of {part}");
+        for layer in &plan.layers {
+            let body = &profile.layers.bodies[layer.body];
+            let outside = |p: &DVec3| body.within.iter().any(|bound| bound.height(*p) < -3.0);
+            assert_eq!(beads(layer, &profile).find(outside), None, "{turned}: layer {}", layer.index + 1);
+        }
+        for branch in [1, 2] {
+            let first = plan.layers.iter().find(|layer| layer.body == branch && !layer.passes.is_empty()).unwrap();
+            let away = |p: DVec3| p.truncate().length();
+            let [near, far] = [f64::min, f64::max].map(|of| beads(first, &profile).map(away).reduce(of).unwrap());
+            assert!(17.9 < near && far < 18.1 + first.height, "{turned}: {near} to {far} mm from the trunk's axis");
         }
     }
 }
