@@ -205,9 +205,9 @@ impl Machine {
         if let Some(at) = self.at.filter(|_| self.over && self.weld.is_none()) {
             let way = DVec3::from_array(to) - DVec3::from_array(at);
             // On layers that are not level, along the wire.
-            let along_the_wire = self.stand.is_some_and(|stand| (stand.tool * DVec3::Z).cross(way).length() < 5e-3);
+            let along_the_wire = self.stand.is_some_and(|stand| (stand.tool * DVec3::Z).cross(way).length() < 2e-3);
             assert!(
-                at[..2] == to[..2] || along_the_wire,
+                way.truncate().length() < 2e-3 || along_the_wire,
                 "the torch goes across to {to:?} where it should go up or down"
             );
             self.over = false;
