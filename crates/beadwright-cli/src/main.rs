@@ -6,6 +6,7 @@ mod adapt;
 mod batch;
 mod bead;
 mod build;
+mod calibrate;
 mod check;
 mod clad;
 mod compare;
@@ -65,6 +66,8 @@ enum Command {
     Plan(plan::Arguments),
     /// Make the preform of a model: the part plus the stock that is milled off afterwards, with weights, hours and prices.
     Preform(preform::Arguments),
+    /// Find the tip of the wire, the frame of the part, the axes of a positioner or the place of a scanner from measured points.
+    Calibrate(calibrate::Arguments),
     /// Find build directions in which as little as possible of a part overhangs: around a hub, along a bent tube, or in
     /// pieces cut by planes; written as a file of bodies for `plan --bodies`.
     Directions(directions::Arguments),
@@ -125,6 +128,7 @@ fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Plan(arguments) => parts::run(&arguments),
         Command::Preform(arguments) => preform::run(&arguments),
+        Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Directions(arguments) => directions::run(&arguments),
         Command::Guide(arguments) => guide::run(&arguments),
         Command::Surface(arguments) => surface::run(&arguments),

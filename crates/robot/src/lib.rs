@@ -24,6 +24,7 @@ pub mod arm;
 mod arm_keys;
 pub mod arm_table;
 pub mod body;
+pub mod calibrate;
 pub mod cell;
 pub mod chain;
 mod error;

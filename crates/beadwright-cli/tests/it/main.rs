@@ -5,6 +5,7 @@ mod bad_input;
 mod batch;
 mod bodies;
 mod book;
+mod calibrate;
 mod cli;
 mod common;
 mod convert;

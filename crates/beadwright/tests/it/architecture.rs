@@ -42,7 +42,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
     (
         "robot",
         &[
-            &["arm"],
+            &["arm", "calibrate"],
             &["body", "chain", "opw", "track"],
             &["arm_table", "finding", "home", "metal", "turn"],
             &["urdf"],

@@ -68,7 +68,7 @@ fn in_all_dialects(mut profile: Profile) -> Profile {
     profile.dialects.rapid.as_mut().unwrap().speed_step = 0.001;
     profile.dialects.fanuc.as_mut().unwrap().table_group = Some(2);
     let inform = profile.dialects.inform.as_mut().unwrap();
-    (inform.station, inform.station_pulses) = (Some("ST1".to_owned()), PULSES[..1].to_vec());
+    (inform.station, inform.station_pulses) = (Some("ST1".to_owned()), Some(PULSES));
     inform.frame_turns = Some(false);
     profile
 }
@@ -80,7 +80,6 @@ const PULSES: [f64; 2] = [1994.296925, -1376.711214];
 fn turned_by(plain: &Profile, positioner: &Positioner) -> Profile {
     let mut turned = plain.clone();
     turned.program.positioner = Some(positioner.clone());
-    turned.dialects.inform.as_mut().unwrap().station_pulses = PULSES[..positioner.count()].to_vec();
     turned
 }
 

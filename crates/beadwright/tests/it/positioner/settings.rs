@@ -153,13 +153,13 @@ fn a_cell_says_how_its_controller_turns_the_part() {
         let mut profile = profile("cmt-steel-robots");
         profile.program.positioner = Some(tilting(Turning::Follow));
         let inform = profile.dialects.inform.as_mut().unwrap();
-        (inform.station, inform.station_pulses) = (Some("ST1".to_owned()), vec![1994.3, 1376.7]);
+        (inform.station, inform.station_pulses) = (Some("ST1".to_owned()), Some([1994.3, 1376.7]));
         inform.frame_turns = Some(true);
         change(&mut profile);
         Profile::parse(&profile.toml_text().unwrap()).map(drop).map_err(|error| error.to_string())
     };
     assert_eq!(wrong(|_| {}), Ok(()));
-    let pulses = wrong(|p| p.dialects.inform.as_mut().unwrap().station_pulses = vec![1994.3]).unwrap_err();
+    let pulses = wrong(|p| p.dialects.inform.as_mut().unwrap().station_pulses = Some([1994.3, 0.0])).unwrap_err();
     assert!(pulses.contains("inform.station_pulses") && pulses.contains("2 axes"), "{pulses}");
     let frame = wrong(|p| p.dialects.inform.as_mut().unwrap().frame_turns = None).unwrap_err();
     assert!(frame.contains("inform.frame_turns"), "{frame}");

@@ -85,10 +85,10 @@ pub struct Inform {
     /// jobs do not agree, so try it with a part that stands beside the axis, without the arc.
     #[serde(default)]
     pub frame_turns: Option<bool>,
-    /// Pulses per degree of each of the station's axes, in the order of `program.positioner.axes`; negative where the axis
-    /// counts the other way.
+    /// Pulses per degree of the station's axes, in the order of `program.positioner.axes`; negative where an axis counts the
+    /// other way. With one axis the second value does not matter.
     #[serde(default)]
-    pub station_pulses: Vec<f64>,
+    pub station_pulses: Option<[f64; 2]>,
     /// Lines at other places of the program; default none.
     #[serde(default)]
     pub hooks: Hooks,
@@ -186,19 +186,21 @@ impl Section for Inform {
 impl Inform {
     /// The first contradiction about a station that turns the part.
     fn broken_station(&self, program: &ProgramSettings) -> Option<Broken> {
-        let (axes, pulses) = (program.turning_axes(), &self.station_pulses);
+        let (axes, pulses) = (program.turning_axes(), self.station_pulses);
         if self.station.is_none() || axes == 0 {
             return None;
         }
         let broken = |key: &str, value: String, reason: String| Some(Broken { key: key.to_owned(), value, reason });
-        if pulses.len() != axes || pulses.iter().any(|pulses| !PULSES.contains(&pulses.abs())) {
+        let wrong = |pulses: [f64; 2]| pulses[..axes].iter().any(|pulses| !PULSES.contains(&pulses.abs()));
+        if pulses.is_none_or(wrong) {
             let reason = format!(
                 "it needs the pulses per degree of each of the {axes} axes that turn the part, from {} to {}, with a minus sign \
                  where an axis counts the other way.",
                 PULSES.start(),
                 PULSES.end()
             );
-            return broken("inform.station_pulses", format!("{pulses:?}"), reason);
+            let value = pulses.map_or("missing".to_owned(), |pulses| format!("{:?}", &pulses[..axes]));
+            return broken("inform.station_pulses", value, reason);
         }
         if self.frame_turns.is_none() {
             let reason = "say whether the user frame turns with the station: true if positions are on the part, false if it stays \

@@ -127,7 +127,8 @@ impl YaskawaInform {
     /// Adds the station's position beside the robot's.
     fn turn(&self, job: &mut JobText, angles: Option<[f64; 2]>) {
         let Some(angles) = angles.filter(|_| self.station().is_some()) else { return };
-        let axes = angles.iter().zip(&self.inform.station_pulses).take(self.frame.program.turning_axes());
+        let pulses = self.inform.station_pulses.unwrap_or([1.0; 2]);
+        let axes = angles.iter().zip(pulses).take(self.frame.program.turning_axes());
         let pulses: Vec<String> = axes.map(|(angle, pulses)| fixed(angle * pulses, 0)).collect();
         let _ = write!(job.stations, "EC{:05}={}\r\n", job.count, pulses.join(","));
     }

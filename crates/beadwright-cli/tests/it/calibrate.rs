@@ -1,0 +1,80 @@
+//! A cell calibrated from tables of measured points.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_beadwright")).current_dir(folder).args(arguments).output().unwrap()
+}
+
+fn json(folder: &Path, arguments: &[&str]) -> serde_json::Value {
+    let output = run(folder, &[&["calibrate"], arguments, &["--json"]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn near(value: &serde_json::Value, expected: &[f64], tolerance: f64) {
+    let found: Vec<f64> = value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+    let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off <= tolerance && found.len() == expected.len(), "{found:?} is not {expected:?}");
+}
+
+/// The flange of a KUKA above a tip, straight down and leaning by 90° to four sides; the tip of the wire lies 300 mm along the flange's z
+/// and 50 mm along its x.
+#[test]
+fn the_tip_of_the_wire_is_found_from_touches() {
+    let folder = TempDir::new().unwrap();
+    let table = "x;y;z;a;b;c\n950;0;500;0;0;180\n1000;-50;500;90;0;180\n700;0;150;0;-90;180\n\
+                 # leaning about x\n950;-300;200;0;0;-90\n950;300;200;0;0;90\n";
+    fs::write(folder.path().join("touches.csv"), table).unwrap();
+    let found = json(folder.path(), &["tool", "touches.csv"]);
+    near(&found["tip"], &[50.0, 0.0, 300.0], 1e-6);
+    near(&found["touched"], &[1000.0, 0.0, 200.0], 1e-6);
+    let words = run(folder.path(), &["calibrate", "tool", "touches.csv"]);
+    let words = String::from_utf8(words.stdout).unwrap();
+    assert!(words.contains("50.000, 0.000, 300.000 mm") && words.contains("residuals"), "{words}");
+}
+
+#[test]
+fn base_axis_and_scanner_are_found_from_points() {
+    let folder = TempDir::new().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    write("base.csv", "touch,x,y,z\norigin,900,100,400\nx,900,300,400\ntop,850,150,400\n");
+    let found = json(folder.path(), &["base", "base.csv"]);
+    near(&found["origin"], &[900.0, 100.0, 400.0], 1e-6);
+    near(&found["axes"][0], &[0.0, 1.0, 0.0], 1e-9);
+    assert!(found["origin_within"].is_null(), "three points say nothing of the errors");
+    let words = run(folder.path(), &["calibrate", "base", "base.csv", "--robot", "fanuc"]);
+    let words = String::from_utf8(words.stdout).unwrap();
+    assert!(words.contains("R 90.0000°") && words.contains("Measure more"), "{words}");
+    // About y, 200 mm below the part: a point 150 mm beside the axis.
+    write("axis.csv", "angle,x,y,z\n0,150,30,-200\n90,0,30,-350\n-90,0,30,-50\n45,106.066017,30,-306.066017\n");
+    let found = json(folder.path(), &["axis", "axis.csv"]);
+    near(&found["direction"], &[0.0, 1.0, 0.0], 1e-6);
+    near(&found["through"], &[0.0, 30.0, -200.0], 1e-5);
+    write("targets.csv", "sx,sy,sz,x,y,z\n0,0,0,10,20,30\n100,0,0,10,120,30\n0,100,0,-90,20,30\n0,0,100,10,20,130\n");
+    let found = json(folder.path(), &["scanner", "targets.csv"]);
+    near(&found["origin"], &[10.0, 20.0, 30.0], 1e-6);
+    near(&found["axes"][0], &[0.0, 1.0, 0.0], 1e-9);
+}
+
+#[test]
+fn faults_of_a_table_are_named_with_line_and_column() {
+    let folder = TempDir::new().unwrap();
+    let fails = |name: &str, text: &str, what: &str| {
+        fs::write(folder.path().join(name), text).unwrap();
+        let output = run(folder.path(), &["calibrate", what, name]);
+        assert!(!output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let error = fails("a.csv", "angle,x,y\n0,1,2\n", "axis");
+    assert!(error.contains("no column \"z\"") && error.contains("angle, x, y"), "{error}");
+    let error = fails("b.csv", "angle,x,y,z\n0,1,2,3\n10,1,two,3\n", "axis");
+    assert!(error.contains("line 3") && error.contains("column y"), "{error}");
+    let error = fails("c.csv", "touch,x,y,z\ncorner,1,2,3\n", "base");
+    assert!(error.contains("\"corner\" is no touch"), "{error}");
+    let error = fails("d.csv", "angle,x,y,z\n0,1,2,3\n", "axis");
+    assert!(error.contains("1 angles are too few"), "{error}");
+}
