@@ -527,8 +527,7 @@ impl Profile {
         let turning = self.program.positioner.clone();
         let turning = turning.or_else(|| self.program.has_table().then(Positioner::table));
         let inform_station = sections.inform.as_ref().zip(turning).and_then(|(inform, positioner)| {
-            let (pulses, frame_turns) = (inform.station_pulses?[..positioner.count()].to_vec(), inform.frame_turns?);
-            Some(Station { positioner, pulses, frame_turns })
+            Some(Station { positioner, pulses: inform.station_pulses?, frame_turns: inform.frame_turns? })
         });
         let (arc, file) = (sections.arc_codes(), file.map(str::to_owned));
         Options { arc, filament_diameter: None, inform_cm_per_min, inform_station, file, max_megabytes }

@@ -295,10 +295,11 @@ impl Reader<'_> {
             return (at, stated);
         };
         let scale = |k: usize| if *given == Given::Pulses { pulses[k] } else { 1.0 };
-        let angles = std::array::from_fn(|k| axes.get(k).filter(|_| k < pulses.len()).map_or(0.0, |at| at / scale(k)));
+        let count = positioner.count().min(2);
+        let angles = std::array::from_fn(|k| axes.get(k).filter(|_| k < count).map_or(0.0, |at| at / scale(k)));
         let (held, frame) = (positioner.held(angles), positioner.held([0.0; 2]).turn);
         let (back, mut stated) = (held.turn.inverse(), stated);
-        (0..pulses.len()).for_each(|k| stated.axes[k] = Some(angles[k]));
+        (0..count).for_each(|k| stated.axes[k] = Some(angles[k]));
         if *frame_turns {
             return (at, stated);
         }

@@ -191,7 +191,7 @@ impl Inform {
             return None;
         }
         let broken = |key: &str, value: String, reason: String| Some(Broken { key: key.to_owned(), value, reason });
-        let wrong = |pulses: [f64; 2]| pulses[..axes].iter().any(|pulses| !PULSES.contains(&pulses.abs()));
+        let wrong = |pulses: [f64; 2]| pulses.iter().take(axes).any(|pulses| !PULSES.contains(&pulses.abs()));
         if pulses.is_none_or(wrong) {
             let reason = format!(
                 "it needs the pulses per degree of each of the {axes} axes that turn the part, from {} to {}, with a minus sign \
@@ -199,7 +199,7 @@ impl Inform {
                 PULSES.start(),
                 PULSES.end()
             );
-            let value = pulses.map_or("missing".to_owned(), |pulses| format!("{:?}", &pulses[..axes]));
+            let value = pulses.map_or("missing".to_owned(), |pulses| format!("{pulses:?}"));
             return broken("inform.station_pulses", value, reason);
         }
         if self.frame_turns.is_none() {

@@ -143,8 +143,8 @@ pub struct Options {
 pub struct Station {
     /// Its axes; a table that turns about the part's z axis is one of them.
     pub positioner: Positioner,
-    /// Pulses per degree of each axis.
-    pub pulses: Vec<f64>,
+    /// Pulses per degree of each axis; with one, the second does not matter.
+    pub pulses: [f64; 2],
     /// Whether the user frame turns with it, so that positions are on the part.
     pub frame_turns: bool,
 }
