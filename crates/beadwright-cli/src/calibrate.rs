@@ -221,7 +221,10 @@ fn capital(word: &str) -> String {
 }
 
 fn shown(v: DVec3, digits: usize) -> String {
-    format!("{:.digits$}, {:.digits$}, {:.digits$}", v.x, v.y, v.z)
+    let places = 10_f64.powi(digits as i32);
+    // A negative zero becomes 0.
+    let [x, y, z] = ((v * places).round() / places + DVec3::ZERO).to_array();
+    format!("{x:.digits$}, {y:.digits$}, {z:.digits$}")
 }
 
 /// The widths of the intervals, if anything is known of them.

@@ -125,21 +125,24 @@ impl Tube {
         lean <= judge.settings.lean && low < slack
     }
 
-    fn cylinder(&self, side: Side) -> Bound {
+    /// Its surface, rounded so that the text is short, and made this much thicker, mm.
+    fn surface(&self, side: Side, thicker: f64) -> Cylinder {
         let to = |v: DVec3, places: f64| (v * places).round() / places + DVec3::ZERO;
-        Bound::Cylinder(Cylinder {
-            through: to(self.through, 1e3),
-            axis: to(self.axis, 1e6),
-            radius: (self.radius * 1e3).round() / 1e3 + THICKER,
-            side,
-            seam: 0.0,
-        })
+        let radius = ((self.radius + thicker) * 1e3).round() / 1e3;
+        Cylinder { through: to(self.through, 1e3), axis: to(self.axis, 1e6), radius, side, seam: 0.0 }
+    }
+
+    fn inside(&self) -> Bound {
+        Bound::Cylinder(self.surface(Side::Inner, THICKER))
+    }
+
+    fn outside(&self) -> Bound {
+        Bound::Cylinder(self.surface(Side::Outer, THICKER))
     }
 
     /// Layers around it, cut open on the other side than this one.
     fn around(&self, side: DVec3) -> Chart {
-        let Bound::Cylinder(own) = self.cylinder(Side::Outer) else { return Chart::default() };
-        let own = Cylinder { radius: own.radius - THICKER, ..own };
+        let own = self.surface(Side::Outer, 0.0);
         // Seen from a seam at 0, the angle of what lies half a turn away from it is 0.
         let seam = own.angle(self.through + side * self.radius).rem_euclid(360.0).round();
         Chart::Cylinder(Cylinder { seam, ..own })
@@ -214,7 +217,7 @@ impl Tree {
     /// A tube that stands on the table, in level layers.
     fn plant(&mut self, tube: Tube) {
         self.grown.push(Grown { tube, up: DVec3::Z, carried: false, piece: self.pieces.len() });
-        let within = vec![tube.cylinder(Side::Inner)];
+        let within = vec![tube.inside()];
         self.pieces.push(Piece { chart: Chart::default(), within, also: Vec::new(), on_stock: false });
     }
 
@@ -227,16 +230,15 @@ impl Tree {
         let tip = start + up * (tube.ends[1] - tube.ends[0]);
         // Cylinders are endless: one that grows the other way would take this side, too.
         let beside = |other: &&Grown| other.carried && other.up.dot(up) > 0.0 && other.tube.touches(&tube);
-        let outside = self.grown.iter().filter(beside).map(|other| other.tube.cylinder(Side::Outer));
-        let mut within: Vec<Bound> = std::iter::once(tube.cylinder(Side::Inner)).chain(outside).collect();
+        let outside = self.grown.iter().filter(beside).map(|other| other.tube.outside());
+        let mut within: Vec<Bound> = std::iter::once(tube.inside()).chain(outside).collect();
         let leans = |way: DVec3| way.angle_between(up).to_degrees() > judge.settings.lean;
         let (away, below) = (up.reject_from_normalized(carrier.tube.axis), &self.pieces[carrier.piece]);
         let goes_on = ![start, tip].into_iter().any(|p| leans(stacked(below, p)));
         let mut piece = self.pieces.len();
         if goes_on {
             // A little into the carrier, so that they are one.
-            let into = Tube { radius: carrier.tube.radius - 2.0 * THICKER, ..carrier.tube };
-            within.push(into.cylinder(Side::Outer));
+            within.push(Bound::Cylinder(carrier.tube.surface(Side::Outer, -THICKER)));
             piece = carrier.piece;
             self.pieces[piece].also.push(within);
         } else {
@@ -246,7 +248,7 @@ impl Tree {
                 let half = Plane { origin: carrier.tube.through + carrier.tube.axis * other, up: side };
                 (carrier.tube.around(side), Bound::Plane(half.rounded()))
             } else {
-                (Chart::Plane(Plane { origin: start, up }.rounded()), carrier.tube.cylinder(Side::Outer))
+                (Chart::Plane(Plane { origin: start, up }.rounded()), carrier.tube.outside())
             };
             within.push(last);
             self.tilt = self.tilt.max(lies(side));
