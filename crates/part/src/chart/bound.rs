@@ -26,8 +26,10 @@ pub enum Bound {
 const TOLERANCE: f64 = 0.02;
 /// Faces this close to a cylinder count as inside it, mm: those of a part that the cylinder describes are cut nowhere.
 const IN_IT: f64 = 1e-4;
-/// A mesh that a cylinder cuts all around, but for this angle, is cut in halves, rad.
-const GAP: f64 = 0.2;
+/// Longest edge that is cut, as a fraction of the radius.
+const MOST_OF_RADIUS: f64 = 0.5;
+/// A mesh that a cylinder cuts all around, but for this angle, is cut in halves, rad: more than the longest edge spans.
+const GAP: f64 = 0.6;
 
 impl Bound {
     /// Distance of a point from the bound, mm; positive on the side of the body.
@@ -66,8 +68,8 @@ impl From<Plane> for Bound {
 
 fn side_of(cylinder: &Cylinder, mesh: &Mesh) -> Mesh {
     let height = |p: DVec3| cylinder.around(p).height;
-    // A straight edge leaves the cylinder by less than the tolerance.
-    let step = (8.0 * cylinder.radius * TOLERANCE).sqrt();
+    // A straight edge leaves the cylinder by less than the tolerance, and none of those that are cut spans much of the circle.
+    let step = (8.0 * cylinder.radius * TOLERANCE).sqrt().min(MOST_OF_RADIUS * cylinder.radius);
     let may_cross = |a: DVec3, b: DVec3| height(a.midpoint(b)).abs() <= a.distance(b) / 2.0;
     let Ok(fine) = warp::divided_where(mesh, step, &Task::new(), may_cross) else { return Mesh::default() };
     let at = if cylinder.side == Side::Outer { IN_IT } else { -IN_IT };

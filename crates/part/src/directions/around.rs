@@ -89,19 +89,14 @@ impl Hub {
             .collect();
         let seen: f64 = own.iter().map(|(.., area)| area).sum();
         let radius = own.iter().map(|(p, _, area)| p.distance(middle) * area).sum::<f64>() / seen;
-        let mut sectors = [false; SECTORS];
-        for (p, ..) in &own {
-            let turn = (*p - middle).to_angle() / std::f64::consts::TAU + 0.5;
-            sectors[((turn * SECTORS as f64) as usize).min(SECTORS - 1)] = true;
-        }
-        let round = sectors.iter().filter(|seen| **seen).count() as f64 / SECTORS as f64;
         let through = u * middle.x + v * middle.y;
         let at_radius =
             |sample: &&Sample| (flat(sample.place).distance(middle) - radius).abs() < SAME_RADIUS * judge.size;
         let along = samples.iter().filter(at_radius).map(|sample| axis.dot(sample.place));
         let ends = along.fold([f64::MAX, f64::MIN], |[low, high], at| [low.min(at), high.max(at)]);
         let hub = Self { axis, through, radius, seen, ends };
-        (seen > SEEN * judge.surface && round >= ROUND && hub.carries(samples, judge)).then_some(hub)
+        (seen > SEEN * judge.surface && is_round(own.iter().map(|(p, ..)| *p - middle)) && hub.carries(samples, judge))
+            .then_some(hub)
     }
 
     /// Vector from the axis to a sample of the surface.
@@ -132,6 +127,16 @@ impl Hub {
         };
         area(samples.iter().filter(hangs))
     }
+}
+
+/// Whether vectors from an axis point to most of the sectors around it.
+pub(super) fn is_round(from_axis: impl Iterator<Item = DVec2>) -> bool {
+    let mut sectors = [false; SECTORS];
+    for from in from_axis {
+        let turn = from.to_angle() / std::f64::consts::TAU + 0.5;
+        sectors[((turn * SECTORS as f64) as usize).min(SECTORS - 1)] = true;
+    }
+    sectors.iter().filter(|seen| **seen).count() as f64 >= ROUND * SECTORS as f64
 }
 
 /// The point nearest to all normals, as lines (weighted least squares), mm.

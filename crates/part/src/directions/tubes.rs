@@ -5,7 +5,7 @@
 //! if it leans no more from them than a wall may. Otherwise its layers lie around that tube, so that the first is as wide
 //! as all others.
 
-use super::around::middle;
+use super::around::{is_round, middle};
 use super::samples::{FINE, Sample, area};
 use super::ways::{Judge, lies};
 use super::{Division, Piece, State};
@@ -25,11 +25,8 @@ const APART: f64 = 0.3;
 const MOST: usize = 64;
 /// A tube has at least this fraction of the part's surface.
 const LEAST: f64 = 0.004;
-/// Its samples are cut into pieces where they leave a gap along the axis, in radii.
+/// A tube ends where its samples leave a gap this wide along the axis, in radii.
 const GAP: f64 = 1.0;
-/// Samples must lie in this fraction of the sectors around an axis.
-const ROUND: f64 = 0.6;
-const SECTORS: usize = 24;
 /// At most this fraction of the surface may lie on no tube and at no end of one.
 const ELSE: f64 = 0.03;
 /// Tubes are this much thicker than their samples, mm, so that their own surface is cut nowhere.
@@ -47,9 +44,8 @@ const FITS: usize = 4;
 const POWERS: usize = 60;
 /// Sine of the least angle between a branch and its carrier.
 const FLATTEST: f64 = 0.3;
-/// Axes within this of the vertical are vertical, °.
-const UPRIGHT: f64 = 1.0;
-
+/// Directions that are found may lie this much beyond the largest tilt, °.
+const BEYOND: f64 = 1.0;
 /// Pieces of one part may lie this far over their bounds, mm.
 const OVER: f64 = 0.1;
 
@@ -81,7 +77,7 @@ pub(super) fn tubes(whole: &State, judge: &Judge) -> Option<Division> {
         !judge.stands(sample, judge.table()) && own.is_none_or(|own| judge.hangs(sample, stacked(own, sample.place)))
     };
     let hanging = area(whole.samples.iter().filter(hangs));
-    let fits = tilt <= judge.settings.tilt + UPRIGHT && BETTER * hanging < whole.hanging[0];
+    let fits = tilt <= judge.settings.tilt + BEYOND && BETTER * hanging < whole.hanging[0];
     fits.then_some(Division { pieces, hanging, tilt })
 }
 
@@ -242,7 +238,7 @@ impl Tree {
             piece = carrier.piece;
             self.pieces[piece].also.push(within);
         } else {
-            let around = !leans(away) && lies(away) <= judge.settings.tilt + UPRIGHT;
+            let around = !leans(away) && lies(away) <= judge.settings.tilt + BEYOND;
             let side = if around { away.normalize() } else { up };
             let (chart, last) = if around {
                 let half = Plane { origin: carrier.tube.through + carrier.tube.axis * other, up: side };
@@ -323,15 +319,32 @@ fn largest(samples: &[Sample], judge: &Judge, random: &mut Random) -> Option<Tub
 
 /// Where the normals of two samples meet, seen along an axis, and their distance from there if it is the same.
 fn centre(a: &Sample, b: &Sample, axis: DVec3) -> Option<(DVec3, f64)> {
-    let (u, v) = (axis.any_orthonormal_vector(), axis.cross(axis.any_orthonormal_vector()));
-    let flat = |p: DVec3| DVec2::new(u.dot(p), v.dot(p));
-    let ([p, q], [n, m]) = ([a.place, b.place].map(flat), [a.normal, b.normal].map(flat));
+    let flat = seen_along(axis);
+    let ([p, q], [n, m]) = ([a.place, b.place].map(&flat), [a.normal, b.normal].map(&flat));
     let turn = n.perp_dot(m);
     let [first, second] = [(p - q).perp_dot(m) / turn, (p - q).perp_dot(n) / turn];
     let radius = (first + second) / 2.0;
     let fits = turn.abs() > 1e-9 && radius > 0.0 && (first - second).abs() < NEAR * radius;
     let middle = p - n * first;
-    fits.then(|| (u * middle.x + v * middle.y, radius))
+    fits.then(|| (on_plane(axis, middle), radius))
+}
+
+/// Two directions square to an axis.
+fn square(axis: DVec3) -> [DVec3; 2] {
+    let first = axis.any_orthonormal_vector();
+    [first, axis.cross(first)]
+}
+
+/// Places as seen along an axis.
+fn seen_along(axis: DVec3) -> impl Fn(DVec3) -> DVec2 {
+    let [u, v] = square(axis);
+    move |p| DVec2::new(u.dot(p), v.dot(p))
+}
+
+/// The inverse, on the plane through the origin.
+fn on_plane(axis: DVec3, p: DVec2) -> DVec3 {
+    let [u, v] = square(axis);
+    u * p.x + v * p.y
 }
 
 fn is_on(tube: &Tube, sample: &Sample) -> bool {
@@ -353,8 +366,7 @@ fn refined(mut tube: Tube, samples: &[Sample], judge: &Judge) -> Option<(Tube, V
         let others =
             DMat3::from_diagonal(DVec3::splat(normals.x_axis.x + normals.y_axis.y + normals.z_axis.z)) - normals;
         let axis = (0..POWERS).fold(tube.axis, |axis, _| (others * axis).normalize_or(axis));
-        let (u, v) = (axis.any_orthonormal_vector(), axis.cross(axis.any_orthonormal_vector()));
-        let flat = |p: DVec3| DVec2::new(u.dot(p), v.dot(p));
+        let flat = seen_along(axis);
         let faces: Vec<(DVec2, DVec2, f64)> = on_it
             .iter()
             .map(|sample| (flat(sample.place), flat(sample.normal).normalize_or_zero(), sample.area))
@@ -362,22 +374,17 @@ fn refined(mut tube: Tube, samples: &[Sample], judge: &Judge) -> Option<(Tube, V
         let middle = middle(&faces, NEAR * tube.radius)?;
         let weight: f64 = faces.iter().map(|(.., area)| area).sum();
         let radius = faces.iter().map(|(p, _, area)| p.distance(middle) * area).sum::<f64>() / weight;
-        tube = Tube { axis, through: u * middle.x + v * middle.y, radius, ends: tube.ends };
+        tube = Tube { axis, through: on_plane(axis, middle), radius, ends: tube.ends };
     }
     let own = run(&tube, samples, gap);
     let along = own.iter().map(|k| tube.place(samples[*k].place).0);
     tube.ends = along.fold([f64::MAX, f64::MIN], |[low, high], at| [low.min(at), high.max(at)]);
-    let (u, v) = (tube.axis.any_orthonormal_vector(), tube.axis.cross(tube.axis.any_orthonormal_vector()));
-    let mut sectors = [false; SECTORS];
-    for from in own.iter().map(|k| samples[*k].place - tube.through) {
-        let turn = DVec2::new(u.dot(from), v.dot(from)).to_angle() / std::f64::consts::TAU + 0.5;
-        sectors[((turn * SECTORS as f64) as usize).min(SECTORS - 1)] = true;
-    }
-    let round = sectors.iter().filter(|seen| **seen).count() as f64 / SECTORS as f64;
+    let flat = seen_along(tube.axis);
+    let round = is_round(own.iter().map(|k| flat(samples[*k].place - tube.through)));
     let seen = area(own.iter().map(|k| &samples[*k]));
     let mut on_it = vec![false; samples.len()];
     own.into_iter().for_each(|k| on_it[k] = true);
-    (round >= ROUND && seen > LEAST * judge.surface).then_some((tube, on_it))
+    (round && seen > LEAST * judge.surface).then_some((tube, on_it))
 }
 
 /// The samples on a tube, as far as they lie along it without a gap (mm at least): the stretch with most of them.

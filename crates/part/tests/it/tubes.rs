@@ -122,6 +122,18 @@ fn a_cylinder_parts_a_bar_in_two() {
             }
         }
     }
+    // Cylinders that cut a bar all around, however thin they are.
+    for radius in [0.1, 0.3, 0.5, 1.0, 2.0, 4.0] {
+        let part = |side: &str| {
+            let text = format!("cylinder:axis=z,through=0/3/0,radius={radius},side={side}");
+            text.parse::<Bound>().unwrap().part_of(&bar.mesh()).volume()
+        };
+        let (inner, outer) = (part("inner"), part("outer"));
+        assert!(((inner + outer) / bar.mesh().volume() - 1.0).abs() < 1e-3, "{radius}: {inner} {outer}");
+        // Edges of the cut lie 0.02 mm from the circle, or span a half of the radius.
+        let volume = inner / (PI * radius * radius * 20.0);
+        assert!((0.93..1.01).contains(&volume), "{radius}: {volume}");
+    }
     // A round hole through a plate is cut all around.
     let plate = Bar { from: DVec3::ZERO, along: DVec3::Z, radius: 50.0, length: 8.0 }.mesh();
     let rest: Bound = "cylinder:axis=z,through=4/2/0,radius=20,side=outer".parse().unwrap();
