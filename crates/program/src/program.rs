@@ -6,6 +6,7 @@
 //! arc: `Weld` is then just a move along the path, since no `ArcOn` precedes it.
 
 mod attitude;
+mod holder;
 mod machine;
 mod placed;
 mod positioner;
@@ -19,8 +20,8 @@ mod turns;
 mod weave;
 
 pub use attitude::Attitude;
+use holder::Holder;
 pub use machine::{MACHINES, Machine};
-use positioner::Holder;
 pub use positioner::{Held, Positioner, PositionerAxis, Turning};
 pub use safety::Safety;
 pub use settings::ProgramSettings;
