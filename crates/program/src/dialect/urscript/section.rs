@@ -104,13 +104,13 @@ impl Section for Urscript {
     }
 
     fn broken(&self, program: &ProgramSettings) -> Option<Broken> {
-        let together = program.positioner.as_ref().is_some_and(|own| own.turning != Turning::IndexAtHome);
+        let value = match program.positioner.as_ref()?.turning {
+            Turning::Follow => "follow",
+            Turning::Index => "index",
+            Turning::IndexAtHome => return None,
+        };
         let reason = "URScript does not move the axes with the torch (urscript.turn): set it to \"index-at-home\".";
-        (together && !self.turn.is_empty()).then(|| Broken {
-            key: "program.positioner.turning".to_owned(),
-            value: "with the torch".to_owned(),
-            reason: reason.to_owned(),
-        })
+        (!self.turn.is_empty()).then(|| Broken::text("program.positioner.turning", value, reason))
     }
 
     fn table(&self) -> Option<Table> {

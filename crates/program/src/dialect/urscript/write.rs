@@ -124,9 +124,7 @@ impl UniversalScript {
     }
 
     fn turn_to(&mut self, held: Held, function: &mut Function) {
-        let [first, second] = held.angles.map(|angle| fixed(angle, 4));
-        self.frame.values.set("positioner_1", first);
-        self.frame.values.set("positioner_2", second);
+        self.frame.values.set_turned(held.angles);
         self.frame.values.expand(&self.urscript.turn).for_each(|line| function.line(&line));
         let frame = frame_text(&self.part_frame(held));
         if self.frame.program.layer_offsets {

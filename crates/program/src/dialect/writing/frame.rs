@@ -397,6 +397,7 @@ fn skippable<S: Syntax>(syntax: &mut S, text: &mut S::Text, what: Skippable, lin
 
 fn instruction<S: Syntax>(syntax: &mut S, text: &mut S::Text, moves: &[Instruction], at: usize) {
     if let Some(attitude) = moves[at].attitude() {
+        attitude.held.iter().for_each(|held| syntax.frame_mut().values.set_turned(held.angles));
         syntax.stand(attitude);
     }
     if let Instruction::WireFeed { ratio } = moves[at] {

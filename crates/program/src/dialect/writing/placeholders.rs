@@ -96,6 +96,12 @@ impl Values {
         restart::number(self.layer, usize::MAX)
     }
 
+    /// Sets the angles of the axes that turn the part, °.
+    pub(in crate::dialect) fn set_turned(&mut self, [first, second]: [f64; 2]) {
+        self.set("positioner_1", fixed(first, 4));
+        self.set("positioner_2", fixed(second, 4));
+    }
+
     /// Sets the wait for the next templates, s.
     pub(in crate::dialect) fn set_dwell(&mut self, seconds: f64) {
         self.set("dwell", fixed(seconds, 3));
