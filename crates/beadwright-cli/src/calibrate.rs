@@ -134,7 +134,7 @@ fn base(Posed { points, robot }: &Posed) -> anyhow::Result<()> {
         Ok((touch, DVec3::from_slice(row)))
     });
     let touches = touches.collect::<anyhow::Result<Vec<_>>>()?;
-    let found = calibrate::base(&touches, None).with_context(|| table.name.clone())?;
+    let found = calibrate::base(&touches).with_context(|| table.name.clone())?;
     placed(points.json, &found, *robot, "frame of the part", "touch")
 }
 

@@ -18,6 +18,8 @@
 //! greater margins; [`external_axes`] for the position of the robot on a linear axis and the angle of a table under the
 //! part.
 //!
+//! [`calibrate`] finds from measured points where tool, part, positioner and scanner are; it needs no cell.
+//!
 //! Not checked: cables, anything that the cell does not describe, and the dynamics of the load.
 
 pub mod arm;

@@ -55,12 +55,12 @@ impl Touch {
 const REMEDY: &str = "give three points on top that are far apart (origin, x and xy count), two on the x axis or the front, and one on the \
                       left or the origin.";
 
-/// The frame in which all touched points lie where they should. `inside` is a rough point of the part: y grows from the
-/// front towards it, x from the left, and z upwards in the robot's base.
+/// The frame in which all touched points lie where they should: z points up in the robot's base, and x from the left
+/// towards the other points.
 ///
 /// # Errors
 /// [`CalibrateError::Undetermined`].
-pub fn base(touches: &[(Touch, DVec3)], inside: Option<DVec3>) -> Result<Calibrated, CalibrateError> {
+pub fn base(touches: &[(Touch, DVec3)]) -> Result<Calibrated, CalibrateError> {
     let undetermined = CalibrateError::Undetermined(REMEDY);
     let of = |wanted: &dyn Fn(Touch) -> bool| -> Vec<DVec3> {
         touches.iter().filter(|(touch, _)| wanted(*touch)).map(|(_, p)| *p).collect()
@@ -73,8 +73,8 @@ pub fn base(touches: &[(Touch, DVec3)], inside: Option<DVec3>) -> Result<Calibra
     let up = if up.z < 0.0 { -up } else { up };
     let along = farthest(&front).ok_or(undetermined)?.reject_from_normalized(up).try_normalize().ok_or(undetermined)?;
     let left_at = left.first().copied().ok_or(undetermined)?;
-    let inside = inside.unwrap_or_else(|| middle(&touches.iter().map(|(_, p)| *p).collect::<Vec<_>>()));
-    let ahead = touches.iter().find(|(touch, _)| *touch == Touch::AlongX).map_or(inside, |(_, p)| *p);
+    let all = || middle(&of(&|_| true));
+    let ahead = touches.iter().find(|(touch, _)| *touch == Touch::AlongX).map_or_else(all, |(_, p)| *p);
     let along = if along.dot(ahead - left_at) < 0.0 { -along } else { along };
     let beside = up.cross(along);
     let (top_at, front_at) = (middle(&top), middle(&front));

@@ -118,7 +118,7 @@ fn the_part_is_found_by_its_sides_within_the_stated_interval() {
         for (touch, points) in sides {
             touches.extend(points.into_iter().map(|p| (touch, truth.outside(DVec3::from_array(p)) + random.noise())));
         }
-        let found = base(&touches, None).unwrap();
+        let found = base(&touches).unwrap();
         let (shift, angle) = off(&found, &truth);
         at.add(shift, found.at_within);
         turn.add(angle, found.turn_within);
@@ -137,11 +137,11 @@ fn three_points_give_a_frame_without_an_interval() {
         touch(Touch::AlongX, [200.0, 0.0, 0.0]),
         touch(Touch::Top, [50.0, 150.0, 0.0]),
     ];
-    let found = base(&touches, None).unwrap();
+    let found = base(&touches).unwrap();
     let (shift, angle) = off(&found, &truth);
     assert!(shift.length() < 1e-6 && angle.length() < 1e-6, "{shift} {angle}");
     assert!(found.at_within.x.is_infinite() && found.residuals.spare == 0);
-    assert!(base(&touches[..2], None).unwrap_err().to_string().contains("three points on top"));
+    assert!(base(&touches[..2]).unwrap_err().to_string().contains("three points on top"));
 }
 
 #[test]
