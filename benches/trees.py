@@ -2,10 +2,13 @@
 """Finds the bodies of random trees of round bars with `beadwright directions`, plans them, and prints a table.
 
 A tree is an upright trunk with one to four branches at 30 to 90 degrees, on the trunk or on each other, at least 25 mm apart; the bars are
-united by the library manifold3d (`pip install manifold3d numpy`). At the end: how many trees had as many bodies as bars, how many were
+united by the library manifold3d (`pip install manifold3d numpy`). At the end: how many parts had as many bodies as bars, how many were
 planned, and what the worst of them leaves open. Meshes, bodies and plans stay in --output.
 
-Usage: benches/trees.py [--seed 1] [--count 20] [--output FOLDER] [--binary FILE] [--no-plan]
+With --nodes the parts are not random: a T, a Y at 60 and at 30 degrees, four bars on a trunk, and a node of three at 65 degrees, each as
+it is and turned about z by 37 degrees.
+
+Usage: benches/trees.py [--nodes] [--seed 1] [--count 20] [--output FOLDER] [--binary FILE] [--no-plan]
 """
 import argparse, json, pathlib, subprocess, time
 import manifold3d, numpy as np
@@ -54,6 +57,23 @@ def tree(seed):
     return bars
 
 
+def nodes(turned):
+    """Named parts, turned about z by some degrees."""
+    def way(lean, around):
+        lean, around = np.radians(lean), np.radians(around + turned)
+        return np.array([np.sin(lean) * np.cos(around), np.sin(lean) * np.sin(around), np.cos(lean)])
+
+    def on_trunk(*branches):
+        trunk = (np.zeros(3), np.array([0, 0, 1.0]), 20.0, 140.0)
+        return [trunk] + [(np.array([0, 0, height]), way(lean, around), radius, length) for height, lean, around, radius, length in branches]
+
+    return {
+        "t": on_trunk((90, 90, 0, 14, 100)), "y60": on_trunk((80, 60, 33, 14, 110)), "y30": on_trunk((60, 30, 33, 14, 120)),
+        "four": on_trunk((60, 90, 10, 12, 90), (60, 80, 100, 12, 90), (95, 75, 190, 12, 90), (95, 90, 280, 12, 90)),
+        "node": on_trunk(*((85, 65, around, 13, 100) for around in (20, 140, 260))),
+    }
+
+
 def save(bars, path):
     whole = bar(*bars[0])
     for own in bars[1:]:
@@ -67,19 +87,18 @@ def save(bars, path):
     path.write_bytes(b"\0" * 80 + np.uint32(len(facets)).tobytes() + facets.tobytes())
 
 
-def tried(binary, seed, out, plan):
-    bars = tree(seed)
-    model, bodies = out / f"tree{seed}.stl", out / f"tree{seed}.bodies.toml"
+def tried(binary, name, bars, out, plan):
+    model, bodies = out / f"{name}.stl", out / f"{name}.bodies.toml"
     save(bars, model)
     began = time.monotonic()
     found = subprocess.run([binary, "directions", model, "--units", "mm", "-o", bodies], capture_output=True, text=True)
-    row = {"seed": seed, "bars": len(bars), "seconds": time.monotonic() - began, "bodies": "", "why": found.stderr.strip()[:150]}
+    row = {"part": name, "bars": len(bars), "seconds": time.monotonic() - began, "bodies": "", "why": found.stderr.strip()[:150]}
     if found.returncode or not bodies.exists():
         return row | {"status": f"nothing found ({found.returncode})"}
     row["bodies"] = bodies.read_text().count("[[body]]")
     if not plan:
         return row | {"status": "found"}
-    folder = out / f"tree{seed}"
+    folder = out / name
     done = subprocess.run([binary, "plan", model, "--units", "mm", "--bodies", bodies, "-o", folder], capture_output=True, text=True)
     said = [line for line in done.stderr.splitlines() if line.strip() and not line.startswith("note")]
     row["why"] = (said[1] if done.returncode and len(said) > 1 else said[0] if said else "")[:150]
@@ -97,14 +116,19 @@ def main():
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("trees"))
     parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/beadwright")
+    parser.add_argument("--nodes", action="store_true")
     parser.add_argument("--no-plan", action="store_true")
     given = parser.parse_args()
     given.output.mkdir(parents=True, exist_ok=True)
-    columns = ["seed", "bars", "bodies", "status", "seconds", "starts", "covered", "void", "overfill", "why"]
+    columns = ["part", "bars", "bodies", "status", "seconds", "starts", "covered", "void", "overfill", "why"]
     print("| " + " | ".join(columns) + " |\n|" + " --- |" * len(columns))
     rows = []
-    for seed in range(given.seed, given.seed + given.count):
-        rows.append(row := tried(given.binary.resolve(), seed, given.output, not given.no_plan))
+    if given.nodes:
+        parts = ((f"{name}-{turned}", bars) for turned in (0, 37) for name, bars in nodes(turned).items())
+    else:
+        parts = ((f"tree{seed}", tree(seed)) for seed in range(given.seed, given.seed + given.count))
+    for name, bars in parts:
+        rows.append(row := tried(given.binary.resolve(), name, bars, given.output, not given.no_plan))
         shown = (row.get(column) for column in columns)
         print("| " + " | ".join("" if v is None else f"{v:.2f}" if isinstance(v, float) else str(v) for v in shown) + " |", flush=True)
     planned = [row for row in rows if row["status"] == "planned"]

@@ -2,8 +2,8 @@
 
 use super::machines::{a_machine_welds_it, machine};
 use super::{
-    FREE, about, along, axis, cell, chuck, in_all_dialects, off_plumb, planned, planned_at, read, same_path, tilting,
-    turned_by,
+    FREE, about, along, axis, cell, chuck, in_all_dialects, off_plumb, on_part, planned, planned_at, read, same_path,
+    tilting, turned_by,
 };
 use crate::common::profile;
 use crate::readers::{Weld, distance};
@@ -15,7 +15,7 @@ use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::profile::{Body, Profile};
 use beadwright::program::{Positioner, PositionerAxis, Turning};
 use beadwright::task::Task;
-use beadwright::{dialect, model, plan};
+use beadwright::{dialect, example, model, plan};
 use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::TAU;
 
@@ -285,5 +285,35 @@ fn robots_weld_it(name: &str, layers: &[Layer], plain: &Profile, positioner: &Po
                 assert!(weld.axes.iter().all(|axes| *axes == weld.axes[0]), "{case}: it turns under the arc");
             }
         }
+    }
+}
+
+/// To a Yaskawa a table that keeps the arc on its side is a station with one axis, in both kinds of frames.
+#[test]
+fn a_table_is_a_station_with_one_axis() {
+    let mut plain = in_all_dialects(profile("cmt-al2319-kuka"));
+    let layers = plan::plan("cross", &example::find("cross").unwrap().mesh(), &plain, &Task::new()).unwrap().layers;
+    let (layers, up) = (&layers[..1], [0.0, 0.0, 1.0]);
+    let by_torch = readers::inform::run(&dialect::write("inform", layers, &plain.job("demo")).unwrap(), "DEMO");
+    plain.program.table_side = Some(-90.0);
+    let table = Positioner { turning: Turning::Follow, axes: vec![axis([0.0, 0.0, 1.0], FREE)], up };
+    for on_the_part in [true, false] {
+        plain.dialects.inform.as_mut().unwrap().frame_turns = Some(on_the_part);
+        let files = dialect::write("inform", layers, &plain.job("demo")).unwrap();
+        let by_part = readers::inform::run_turned(&files, "DEMO", &|stand| on_part(stand, &table, !on_the_part));
+        same_path(&format!("table {on_the_part}"), &by_torch.welds, &by_part.welds);
+        let turned = by_part.welds.iter().flat_map(|weld| &weld.axes).map(|axes| axes[0].unwrap());
+        let (least, most) = turned.fold((f64::MAX, f64::MIN), |(least, most), at| (least.min(at), most.max(at)));
+        assert!(most - least > 180.0, "{least} to {most}");
+        // Our own reader brings both back to the part.
+        let options = plain.reading_options(None, Some("inform"));
+        let main = files["DEMO.jbi"].clone();
+        let program = dialect::read(&main, &mut |name| files.get(&format!("{name}.jbi")).cloned(), &options).unwrap();
+        // Only home, in pulses, is a place that it does not know.
+        assert!(program.notes.iter().all(|note| note.starts_with("a motion to a place")), "{:?}", program.notes);
+        let own: f64 = program.layers().iter().flat_map(|layer| &layer.passes).map(|pass| along(&pass.points)).sum();
+        let welded = by_torch.welds.iter().flat_map(|weld| weld.points.windows(2));
+        let length: f64 = welded.map(|p| distance(p[0], p[1])).sum();
+        assert!((own / length - 1.0).abs() < 1e-3, "{own} mm read, {length} mm welded");
     }
 }
