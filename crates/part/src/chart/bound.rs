@@ -5,10 +5,12 @@
 
 use super::polar::Polar;
 use super::{Cylinder, Plane, Side, warp};
+use crate::model::adjacency::joined;
 use crate::model::{Mesh, cut};
 use crate::task::Task;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{PI, TAU};
 
 /// A bound of a body. In files it is text: `up=0/0/-1,through=0/0/60`, or
@@ -26,6 +28,8 @@ pub enum Bound {
 const TOLERANCE: f64 = 0.02;
 /// Faces this close to a cylinder count as inside it, mm: those of a part that the cylinder describes are cut nowhere.
 const IN_IT: f64 = 1e-4;
+/// Vertices this close to the cut lie on it, mm.
+const ON_IT: f64 = IN_IT / 10.0;
 /// Longest edge that is cut, as a fraction of the radius.
 const MOST_OF_RADIUS: f64 = 0.5;
 /// A mesh that a cylinder cuts all around, but for this angle, is cut in halves, rad: more than the longest edge spans.
@@ -81,15 +85,74 @@ fn side_of(cylinder: &Cylinder, mesh: &Mesh) -> Mesh {
     if kept == 0 {
         return Mesh::default();
     }
-    let crossing = fine.triangles.iter().map(|triangle| triangle.map(|corner| fine.vertices[corner as usize]));
-    let crossing = crossing.filter(|corners| corners.iter().any(|p| keeps(*p)) && corners.iter().any(|p| !keeps(*p)));
-    let angles: Vec<f64> = crossing.flatten().map(|p| cylinder.around(p).angle).collect();
-    match gap(angles) {
-        Some(middle) => {
-            let seam = cylinder.seam + middle.to_degrees() + 180.0;
-            cut_open(&Cylinder { seam, ..*cylinder }, &fine, at, step)
-        }
+    let crosses = |triangle: &&[u32; 3]| {
+        let keeps = triangle.map(|corner| keeps(fine.vertices[corner as usize]));
+        keeps.contains(&true) && keeps.contains(&false)
+    };
+    let crossing: Vec<[u32; 3]> = fine.triangles.iter().filter(crosses).copied().collect();
+    match angles(cylinder, &fine, &crossing) {
+        Some(angles) => cut_open(cylinder, &fine, &angles, at, step),
         None => in_halves(cylinder, mesh),
+    }
+}
+
+/// For the vertices of triangles that cross the cylinder their angles, rad, such that those of each triangle lie side by
+/// side, and of each cut with the holes in it; `None` if a cut goes all around.
+fn angles(cylinder: &Cylinder, mesh: &Mesh, crossing: &[[u32; 3]]) -> Option<Vec<Option<f64>>> {
+    let around: Vec<_> = mesh.vertices.iter().map(|p| cylinder.around(*p)).collect();
+    let mut angles = vec![None; around.len()];
+    for rim in rims(crossing, around.len(), |vertex| (around[vertex].angle, around[vertex].along)) {
+        let seam = gap(rim.iter().map(|vertex| around[*vertex].angle).collect())?;
+        let unrolled = |angle: f64| if angle < seam { angle + TAU } else { angle };
+        rim.iter().for_each(|vertex| angles[*vertex] = Some(unrolled(around[*vertex].angle)));
+    }
+    Some(angles)
+}
+
+/// The vertices of triangles that hang together, or whose places (angle and length along the axis) lie around each other.
+fn rims(crossing: &[[u32; 3]], corners: usize, place: impl Fn(usize) -> (f64, f64)) -> Vec<Vec<usize>> {
+    let mut rims: BTreeMap<u32, BTreeSet<usize>> = BTreeMap::new();
+    for (corners, rim) in crossing.iter().zip(joined(crossing, corners)) {
+        rims.entry(rim).or_default().extend(corners.map(|corner| corner as usize));
+    }
+    let mut apart: Vec<(Vec<usize>, Spread)> = Vec::new();
+    for rim in rims.into_values() {
+        let mut rim = Vec::from_iter(rim);
+        let mut spread = Spread::of(rim.iter().map(|vertex| place(*vertex)));
+        while let Some(k) = apart.iter().position(|(_, other)| other.meets(&spread)) {
+            rim.extend(apart.swap_remove(k).0);
+            spread = Spread::of(rim.iter().map(|vertex| place(*vertex)));
+        }
+        apart.push((rim, spread));
+    }
+    apart.into_iter().map(|(rim, _)| rim).collect()
+}
+
+/// How far places on a cylinder reach: around it from an angle on, rad, and along it, mm.
+struct Spread {
+    from: f64,
+    reach: f64,
+    along: [f64; 2],
+}
+
+impl Spread {
+    fn of(places: impl Iterator<Item = (f64, f64)> + Clone) -> Self {
+        let along = places.clone().fold([f64::MAX, f64::MIN], |[low, high], (_, at)| [low.min(at), high.max(at)]);
+        let angles: Vec<f64> = places.map(|(angle, _)| angle).collect();
+        let seam = gap(angles.clone());
+        let from = seam.unwrap_or_default();
+        let turns: Vec<f64> = angles.iter().map(|angle| (angle - from).rem_euclid(TAU)).collect();
+        let [low, high] = turns.iter().fold([TAU, 0.0], |[low, high], at| [at.min(low), at.max(high)]);
+        match seam {
+            Some(_) => Self { from: from + low, reach: high - low, along },
+            None => Self { from: 0.0, reach: TAU, along },
+        }
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        let after = |a: &Self, b: &Self| (b.from - a.from).rem_euclid(TAU) <= a.reach;
+        let along = self.along[0] <= other.along[1] && other.along[0] <= self.along[1];
+        along && (after(self, other) || after(other, self))
     }
 }
 
@@ -102,16 +165,19 @@ fn gap(mut angles: Vec<f64>) -> Option<f64> {
     (widest.1 - widest.0 > GAP).then_some((widest.0 + widest.1) / 2.0)
 }
 
-/// Cuts along the cylinder where it is unrolled; no triangle that is cut may cross its seam.
-fn cut_open(cylinder: &Cylinder, mesh: &Mesh, at: f64, step: f64) -> Mesh {
+/// Cuts along the cylinder where it is unrolled: at these angles of the vertices, rad.
+fn cut_open(cylinder: &Cylinder, mesh: &Mesh, angles: &[Option<f64>], at: f64, step: f64) -> Mesh {
     let (mut own, sign) = (mesh.clone(), if cylinder.side == Side::Outer { 1.0 } else { -1.0 });
-    own.vertices.iter_mut().for_each(|p| {
+    own.vertices.iter_mut().zip(angles).for_each(|(p, angle)| {
         let around = cylinder.around(*p);
-        *p = DVec3::new(sign * around.angle * cylinder.radius, around.along, around.height);
+        // Only what is cut lies on the cylinder.
+        let beside = angle.is_none() && (around.height - at).abs() < ON_IT;
+        let height = if beside { around.height + 2.0 * ON_IT } else { around.height };
+        *p = DVec3::new(sign * angle.unwrap_or(around.angle) * cylinder.radius, around.along, height);
     });
     let Some((own, _)) = cut::above(&own, at) else { return Mesh::default() };
     // The closing face follows the cylinder.
-    let on_it = |p: DVec3| p.z.abs() < IN_IT / 10.0;
+    let on_it = |p: DVec3| p.z.abs() < ON_IT;
     let rounds = |a: DVec3, b: DVec3| on_it(a) && on_it(b) && (a.x - b.x).abs() > step;
     let Ok(own) = warp::divided_where(&own, step, &Task::new(), rounds) else { return Mesh::default() };
     let place = |p: &DVec3| cylinder.at(sign * p.x / cylinder.radius, p.y, p.z + at).place;

@@ -6,6 +6,7 @@ use super::{DamageError, Settings, cancelled};
 use crate::chart::warp;
 use crate::deviation::Surface;
 use crate::model::Mesh;
+use crate::model::adjacency::joined;
 use crate::model::triangle::Triangle;
 use crate::task::Task;
 use glam::DVec3;
@@ -95,7 +96,7 @@ fn deep(fine: &Mesh, nearest: &[(f64, DVec3)], open: &[[u32; 2]], settings: Sett
     let faces: Vec<[u32; 3]> = fine.triangles.iter().copied().filter(|face| face.iter().all(is_deep)).collect();
     let mut places: BTreeMap<u32, Found> = BTreeMap::new();
     let mut place_of: BTreeMap<u32, u32> = BTreeMap::new();
-    for (corners, place) in faces.iter().zip(mouth::joined(&faces, fine.vertices.len())) {
+    for (corners, place) in faces.iter().zip(joined(&faces, fine.vertices.len())) {
         let found = places.entry(place).or_default();
         found.faces.push(corners.map(at));
         corners.iter().for_each(|corner| {

@@ -7,6 +7,7 @@
 use super::Settings;
 use crate::deviation::Surface;
 use crate::model::Mesh;
+use crate::model::adjacency::joined;
 use crate::task::{Cancelled, Task};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -83,27 +84,6 @@ pub(super) fn nearest(surface: &Surface, points: &[DVec3], task: &Task) -> Resul
         nearest.par_extend(batch.par_iter().map(|point| surface.nearest(*point)));
     }
     Ok(nearest)
-}
-
-/// The number of the place to which each face belongs: faces that share a corner belong to one.
-pub(super) fn joined(faces: &[[u32; 3]], corners: usize) -> Vec<u32> {
-    let mut parents: Vec<u32> = (0..corners as u32).collect();
-    fn root(parents: &mut [u32], mut corner: u32) -> u32 {
-        while parents[corner as usize] != corner {
-            parents[corner as usize] = parents[parents[corner as usize] as usize];
-            corner = parents[corner as usize];
-        }
-        corner
-    }
-    for &[a, b, c] in faces {
-        let first = root(&mut parents, a);
-        for other in [b, c] {
-            let other = root(&mut parents, other);
-            parents[other as usize] = first.min(other);
-            parents[first as usize] = first.min(other);
-        }
-    }
-    faces.iter().map(|face| root(&mut parents, face[0])).collect()
 }
 
 /// Turns the faces of a scan so that they face out of the metal, each shell as most of it faces beside sound surface of the part.

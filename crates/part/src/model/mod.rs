@@ -21,7 +21,7 @@
 //! | `part` | a model is placed and becomes the part that is planned |
 //! | [`wall_curves`] | walls given by their centre-lines |
 
-mod adjacency;
+pub(crate) mod adjacency;
 mod amf;
 pub mod cut;
 mod formats;

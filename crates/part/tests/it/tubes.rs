@@ -4,6 +4,7 @@ use bead_part::chart::Bound;
 use bead_part::directions::{Division, Piece, Settings, divisions};
 use bead_part::model::Mesh;
 use bead_part::model::solid::Solid;
+use bead_part::slice::{SliceOptions, Slicer};
 use bead_part::task::Task;
 use glam::{DQuat, DVec3};
 use planar::{DVec2, Polygon, Ring};
@@ -139,4 +140,36 @@ fn a_cylinder_parts_a_bar_in_two() {
     let rest: Bound = "cylinder:axis=z,through=4/2/0,radius=20,side=outer".parse().unwrap();
     let volume = plate.volume() - PI * 400.0 * 8.0;
     assert!((rest.part_of(&plate).volume() / volume - 1.0).abs() < 2e-3, "{} {volume}", rest.part_of(&plate).volume());
+}
+
+/// What a cylinder leaves of a trunk is not parted, however densely its branches stand around it.
+#[test]
+fn a_trunk_without_its_branches_has_one_island_a_layer() {
+    let rounds: [&[(f64, f64, f64)]; 3] = [
+        &[(60.0, 88.0, 0.0), (60.0, 88.0, 90.0), (60.0, 88.0, 180.0), (60.0, 88.0, 270.0)],
+        // Their cuts leave no gap around the trunk.
+        &[
+            (40.0, 80.0, 0.0),
+            (70.0, 80.0, 60.0),
+            (100.0, 80.0, 120.0),
+            (40.0, 80.0, 180.0),
+            (70.0, 80.0, 240.0),
+            (100.0, 80.0, 300.0),
+        ],
+        // One over another.
+        &[(40.0, 90.0, 175.0), (75.0, 90.0, 185.0), (110.0, 90.0, 180.0), (110.0, 90.0, 0.0)],
+    ];
+    for (k, branches) in rounds.iter().enumerate() {
+        for turned in [0.0, 41.0, 178.0] {
+            let bars = tree(branches, turned);
+            let mesh = united(&bars);
+            let inner: Bound = "cylinder:axis=z,radius=18.05,side=inner".parse().unwrap();
+            let trunk = inner.part_of(&mesh);
+            let expected = bars[0].mesh().volume();
+            assert!((trunk.volume() / expected - 1.0).abs() < 0.02, "{k} at {turned}°: {} {expected}", trunk.volume());
+            let options = SliceOptions { layer_height: 2.0, close_gap: 0.1, simplify: 0.01 };
+            let layers = Slicer::new(&trunk, options, &Task::new()).unwrap().all(&Task::new()).unwrap();
+            assert!(layers.iter().all(|layer| layer.islands.len() == 1), "{k} at {turned}°");
+        }
+    }
 }
