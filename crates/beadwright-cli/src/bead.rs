@@ -5,11 +5,12 @@ use anyhow::Context;
 use beadwright::bead::library::demonstration_csv;
 use beadwright::bead::library::printed_rows;
 use beadwright::bead::library::{
-    BeadLibrary, Columns, Layering, Limit, Measured, Prediction, PrintedRow, Response, Wish,
+    BeadLibrary, Columns, Layering, Limit, Measured, Prediction, PrintedRow, Recipe, Response, Wish,
 };
 use beadwright::bead::{BeadByHeat, Overlap, wire_area};
 use beadwright::files::write_file;
 use beadwright::heat::{HeatSettings, MeasuredWall, Wall, WallLaw};
+use beadwright::profile::edit;
 use beadwright::report::bead_window;
 use serde_json::{Map, Value, json};
 use std::io::Write;
@@ -17,6 +18,10 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Subcommand)]
 pub(crate) enum Command {
+    /// Write programs for trial beads on plates, and the sheet for their measurements.
+    Trial(Box<crate::trial::Arguments>),
+    /// Measure the beads of a trial in a scan of its plate, and fill in the sheet.
+    Measure(crate::trial::Measure),
     /// Fit the width and height of measured single beads, and write the library.
     Fit(Fit),
     /// Predict the bead for given parameters.
@@ -51,6 +56,17 @@ pub(crate) struct Fit {
     /// Library to write.
     #[arg(short, long, default_value = "bead-library.toml", value_name = "FILE")]
     output: PathBuf,
+    /// Wanted bead, width and layer height in mm, such as 6x2: the parameters that lay it are printed, and written with --to.
+    #[arg(long, value_parser = parse_bead, value_name = "WIDTHxHEIGHT")]
+    want: Option<(f64, f64)>,
+    /// Profile on which that for the wanted bead is based: a built-in name or a TOML file.
+    #[arg(long, short, requires = "want", default_value = profile::USUAL, value_name = "NAME|FILE")]
+    profile: String,
+    /// Profile to write: with the bead, the layer height and the parameters of the wanted bead.
+    #[arg(long, requires = "want", value_name = "FILE.toml")]
+    to: Option<PathBuf>,
+    #[command(flatten)]
+    layering: LayeringArguments,
     /// Write a picture of width/height over the first input, with a curve for each value of the second.
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
@@ -152,6 +168,8 @@ impl LayeringArguments {
 
 pub(crate) fn run(command: &Command) -> anyhow::Result<()> {
     match command {
+        Command::Trial(arguments) => crate::trial::run(arguments),
+        Command::Measure(arguments) => crate::trial::measure(arguments),
         Command::Fit(arguments) => fit(arguments),
         Command::Walls(arguments) => walls(arguments),
         Command::CheckTable(arguments) => check_table(arguments),
@@ -270,13 +288,19 @@ fn fit(arguments: &Fit) -> anyhow::Result<()> {
     };
     let measured = Measured::read(&text, &columns).with_context(|| arguments.data.display().to_string())?;
     let library = BeadLibrary::fit(&measured).with_context(|| arguments.data.display().to_string())?;
+    let recipe = arguments.want.map(|want| wanted(arguments, &library, want)).transpose()?;
+    let profile = recipe.as_ref().map(|recipe| with_recipe(arguments, &library, recipe)).transpose()?;
     write_file(&arguments.output, library.to_toml().as_bytes())?;
+    if let (Some(path), Some(text)) = (&arguments.to, &profile) {
+        write_file(path, text.as_bytes())?;
+    }
     if let Some(path) = &arguments.plot {
         write_file(path, bead_window::plot(&library).svg().as_bytes())?;
     }
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        let value = json!({ "synthetic": library.synthetic, "beads": library.measured.len(), "terms": library.terms, "inputs": library.inputs, "width": library.width, "height": library.height, "notes": library.notes });
+        let value = json!({ "synthetic": library.synthetic, "beads": library.measured.len(), "terms": library.terms, "inputs": library.inputs, "width": library.width, "height": library.height, "notes": library.notes, "next": library.next_trial(recipe.as_ref().map(|recipe| &recipe.values[..])).0,
+            "recipe": recipe.map(|recipe| as_json(&library, &recipe.values, &recipe.prediction, recipe.layer_height, &recipe.notes)) });
         writeln!(out, "{value:#}")?;
         return Ok(());
     }
@@ -294,6 +318,22 @@ fn fit(arguments: &Fit) -> anyhow::Result<()> {
         writeln!(out, "{}", goodness(name, r))?;
     }
     library.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
+    let (next, least) = library.next_trial(recipe.as_ref().map(|recipe| &recipe.values[..]));
+    writeln!(
+        out,
+        "\nthe next bead that tells most{}: {} (width ± {:.2} mm, height ± {:.2} mm there so far)",
+        if recipe.is_some() { " about the wanted one" } else { "" },
+        library.describe(&next),
+        least.width.plus_minus,
+        least.height.plus_minus
+    )?;
+    if let Some(recipe) = &recipe {
+        writeln!(out)?;
+        print_recipe(&mut out, &library, recipe)?;
+        if let Some(path) = &arguments.to {
+            writeln!(out, "\nprofile in {}: beadwright plan PART -p {}", path.display(), path.display())?;
+        }
+    }
     let plot = arguments.plot.as_ref().map_or(String::new(), |p| format!(", plot in {}", p.display()));
     writeln!(out, "\nlibrary in {}{plot}", arguments.output.display())?;
     Ok(())
@@ -366,12 +406,37 @@ fn solve(arguments: &Solve) -> anyhow::Result<()> {
         return Ok(());
     }
     warn(&mut out, &library)?;
+    Ok(print_recipe(&mut out, &library, &recipe)?)
+}
+
+fn print_recipe(out: &mut impl Write, library: &BeadLibrary, recipe: &Recipe) -> std::io::Result<()> {
     for (input, value) in library.inputs.iter().zip(&recipe.values) {
         writeln!(out, "  {:<20} {value:.2} {}", input.name, input.unit)?;
     }
-    print_bead(&mut out, &recipe.prediction, recipe.layer_height)?;
-    recipe.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))?;
-    Ok(())
+    print_bead(out, &recipe.prediction, recipe.layer_height)?;
+    recipe.notes.iter().try_for_each(|note| writeln!(out, "note: {note}"))
+}
+
+/// The parameters for a bead of this width and layer height, mm.
+fn wanted(arguments: &Fit, library: &BeadLibrary, (width, layer_height): (f64, f64)) -> anyhow::Result<Recipe> {
+    let wish = Wish { layering: arguments.layering.layering(width)?, ..Wish::new(width, layer_height) };
+    Ok(library.solve(&wish)?)
+}
+
+/// The text of the profile with a recipe: what no key of a profile is called by stays in the sheet.
+fn with_recipe(arguments: &Fit, library: &BeadLibrary, recipe: &Recipe) -> anyhow::Result<String> {
+    let bead = recipe.prediction.bead();
+    let lengths = [("bead.width", bead.width), ("bead.height", bead.height), ("layers.height", recipe.layer_height)];
+    let keys = ["deposition_speed", "wire_feed_speed", "current", "voltage"];
+    let process = library.inputs.iter().zip(&recipe.values).filter(|(input, _)| keys.contains(&input.name.as_str()));
+    let process = process.map(|(input, value)| (format!("process.{}", input.name), *value));
+    let lengths = lengths.into_iter().map(|(key, value)| (key.to_owned(), value));
+    let mut text = profile::text(&arguments.profile)?;
+    for (key, value) in process.chain(lengths) {
+        text = edit::with_value(&text, &key, &format!("{value:.3}"))?;
+    }
+    profile::parse(&text, &profile::folder(&arguments.profile)).context("the profile with the wanted bead")?;
+    Ok(text)
 }
 
 fn print_bead(out: &mut impl Write, found: &Prediction, layer_height: f64) -> std::io::Result<()> {
@@ -410,6 +475,11 @@ fn read(path: &Path) -> anyhow::Result<String> {
 
 fn load(path: &Path) -> anyhow::Result<BeadLibrary> {
     BeadLibrary::parse(&read(path)?).with_context(|| path.display().to_string())
+}
+
+fn parse_bead(text: &str) -> Result<(f64, f64), String> {
+    let (width, height) = text.split_once(['x', '×']).ok_or("WIDTHxHEIGHT is expected, such as 6x2")?;
+    Ok((number(width)?, number(height)?))
 }
 
 fn parse_value(text: &str) -> Result<(String, f64), String> {

@@ -39,6 +39,7 @@ mod several;
 mod simulate;
 mod studio;
 mod surface;
+mod trial;
 
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;

@@ -124,12 +124,17 @@ pub(crate) const USUAL: &str = "cmt-al2319-kuka";
 
 /// The profile with a built-in name or from a file, with `key=value` settings applied to it.
 pub(crate) fn load(profile: &str, settings: &[String]) -> anyhow::Result<Profile> {
-    let text = match file_of(profile) {
-        Some(path) => file::text(&path)?,
-        None => Profile::built_in_text(profile)?.to_owned(),
-    };
+    let text = text(profile)?;
     let parsed = parse(&text, &folder(profile)).with_context(|| profile.to_owned())?;
     if settings.is_empty() { Ok(parsed) } else { with_settings(text, &folder(profile), settings) }
+}
+
+/// The text of the profile with a built-in name or from a file.
+pub(crate) fn text(profile: &str) -> anyhow::Result<String> {
+    Ok(match file_of(profile) {
+        Some(path) => file::text(&path)?,
+        None => Profile::built_in_text(profile)?.to_owned(),
+    })
 }
 
 /// The file that `profile` stands for: a path, or the name of one of the user's own profiles.
@@ -155,7 +160,7 @@ fn own_folder() -> Option<PathBuf> {
 }
 
 /// Reads a profile whose `inherits` may name a built-in profile, one of the user's own, or a file relative to `folder`.
-fn parse(text: &str, folder: &Path) -> Result<Profile, ProfileError> {
+pub(crate) fn parse(text: &str, folder: &Path) -> Result<Profile, ProfileError> {
     let mut folder = folder.to_owned();
     Profile::parse_with(text, &mut |name| {
         let Some(named) = file_of(name) else { return Ok(Profile::built_in_text(name)?.to_owned()) };

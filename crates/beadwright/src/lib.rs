@@ -31,6 +31,7 @@ pub mod plan;
 pub mod profile;
 pub mod read_back;
 pub mod report;
+pub mod trial;
 
 // Used by the modules above, and open to anyone who needs them.
 #[doc(hidden)]

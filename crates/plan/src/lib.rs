@@ -17,6 +17,7 @@
 //! | [`limit`] | the allowed range of every number in a profile, with its reason |
 //! | [`preform`] | a part plus the stock that is milled off afterwards, and the orientation in which that costs least |
 //! | [`random`] | seeded random numbers |
+//! | [`trial`] | trial beads on plates: designs of experiments, numbers in weld metal, the sheet to fill in |
 
 pub mod bead;
 pub mod deposit;
@@ -30,5 +31,6 @@ pub mod pass;
 pub mod preform;
 pub mod process;
 pub mod random;
+pub mod trial;
 pub mod wedge;
 pub mod weld;

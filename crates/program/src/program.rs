@@ -249,7 +249,7 @@ impl Programmer {
 
     /// Programs passes as welded; a dry run has the same moves without arc.
     pub fn of(weld: &WeldSettings, program: &ProgramSettings, dry: bool) -> Self {
-        let other_layers = !weld.process.layers.is_empty();
+        let other_layers = weld.process.feeds_by_layer();
         let sets_feed = weld.process.follow == Follow::WireFeed || weld.ends.crater_is_weaker() || other_layers;
         let (torch, restarts) = (Torch::of(weld), program.restart);
         let (tilt, table) = (Tilt::new(program), Follower::new(program));

@@ -8,6 +8,7 @@ mod contrast;
 mod docs;
 mod heat;
 mod holding;
+mod inside;
 mod project;
 mod section;
 #[path = "../../../beadwright/tests/it/sight/mod.rs"]

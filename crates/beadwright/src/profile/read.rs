@@ -119,6 +119,7 @@ fn without_nulls(value: &serde_json::Value) -> serde_json::Value {
             let kept = map.iter().filter(|(_, value)| !value.is_null());
             kept.map(|(key, value)| (key.clone(), without_nulls(value))).collect()
         }
+        serde_json::Value::Array(values) => values.iter().map(without_nulls).collect(),
         other => other.clone(),
     }
 }

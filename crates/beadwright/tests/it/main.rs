@@ -1,6 +1,8 @@
 //! All tests of the crate as one program: each file is a module, `cargo test -p beadwright --test it FILE::` runs one.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
 
+use beadwright::{chart, layer};
+
 mod accessible;
 mod adapt;
 mod arc_watch;
@@ -50,6 +52,7 @@ mod holes;
 mod hybrid;
 mod iges;
 mod inherits;
+mod inside;
 mod line_ends;
 mod matrix;
 mod models;
@@ -93,6 +96,7 @@ mod toolpath;
 mod torch_angle;
 mod tour;
 mod trajectory;
+mod trial;
 mod wall;
 mod wall_curves;
 mod wall_paths;

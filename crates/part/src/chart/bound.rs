@@ -5,7 +5,7 @@
 
 use super::polar::Polar;
 use super::{Cylinder, Plane, Side, warp};
-use crate::model::adjacency::joined;
+use crate::model::connected::joined;
 use crate::model::{Mesh, cut};
 use crate::task::Task;
 use glam::DVec3;

@@ -6,7 +6,7 @@ use super::{DamageError, Settings, cancelled};
 use crate::chart::warp;
 use crate::deviation::Surface;
 use crate::model::Mesh;
-use crate::model::adjacency::joined;
+use crate::model::connected::joined;
 use crate::model::triangle::Triangle;
 use crate::task::Task;
 use glam::DVec3;

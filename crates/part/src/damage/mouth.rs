@@ -7,7 +7,7 @@
 use super::Settings;
 use crate::deviation::Surface;
 use crate::model::Mesh;
-use crate::model::adjacency::joined;
+use crate::model::connected::joined;
 use crate::task::{Cancelled, Task};
 use glam::DVec3;
 use rayon::prelude::*;

@@ -11,6 +11,7 @@
 //! | `xml` | elements of XML files, one after another |
 //! | `merge_vertices` | equal corners become one vertex |
 //! | `adjacency` | which triangle lies across each edge |
+//! | `connected` | which faces hang together |
 //! | [`repair`] | degenerate and duplicate triangles, cracks, inconsistent winding |
 //! | [`cut`] | the part of a solid above a plane |
 //! | [`iges`] | curves from IGES files, and curves written as IGES |
@@ -21,8 +22,9 @@
 //! | `part` | a model is placed and becomes the part that is planned |
 //! | [`wall_curves`] | walls given by their centre-lines |
 
-pub(crate) mod adjacency;
+mod adjacency;
 mod amf;
+pub(crate) mod connected;
 pub mod cut;
 mod formats;
 mod gzip;

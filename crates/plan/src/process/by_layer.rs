@@ -34,6 +34,11 @@ impl Process {
         process
     }
 
+    /// Whether some layers have another wire feed than nominal.
+    pub fn feeds_by_layer(&self) -> bool {
+        self.layers.iter().any(|row| row.deposition_speed != self.deposition_speed)
+    }
+
     /// The first invalid row of layers.
     pub fn broken(&self) -> Option<Broken> {
         let (least, most) = (0.2 * self.deposition_speed, 5.0 * self.deposition_speed);

@@ -15,6 +15,9 @@ impl BeadLibrary {
     /// Too few beads; inputs that do not vary, or that depend on each other.
     pub fn fit(measured: &Measured) -> Result<Self, LibraryError> {
         let (measured, mut notes) = varying(measured)?;
+        if measured.unmeasured > 0 {
+            notes.insert(0, format!("{} without width and height left out.", counted(measured.unmeasured)));
+        }
         let inputs = &measured.inputs;
         let coded: Vec<Vec<f64>> =
             measured.rows.iter().map(|r| inputs.iter().zip(r).map(|(i, v)| i.coded(*v)).collect()).collect();
@@ -42,12 +45,20 @@ impl BeadLibrary {
     }
 }
 
+fn counted(beads: usize) -> String {
+    if beads == 1 { "1 bead".to_owned() } else { format!("{beads} beads") }
+}
+
 /// The measurements without the inputs that have the same value throughout.
 fn varying(measured: &Measured) -> Result<(Measured, Vec<String>), LibraryError> {
     let mut kept = measured.clone();
     let mut notes = Vec::new();
     for (k, input) in measured.inputs.iter().enumerate().rev() {
         if levels(measured, k) > 1 {
+            if input.name == "job" {
+                let reason = "jobs of the power source have no order. Fit the beads of each job by themselves, or name the inputs.";
+                return Err(LibraryError::Inputs { reason: reason.to_owned() });
+            }
             continue;
         }
         notes.insert(

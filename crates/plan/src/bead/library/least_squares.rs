@@ -71,12 +71,18 @@ impl Factored {
 
 /// Leverage of a row of terms: rowᵀ (XᵀX)⁻¹ row, from the triangle R of X.
 pub(super) fn leverage(triangle: &[Vec<f64>], row: &[f64]) -> f64 {
+    let u = whitened(triangle, row);
+    dot(&u, &u)
+}
+
+/// R⁻ᵀ row: products of two such vectors are those of the rows by (XᵀX)⁻¹.
+pub(super) fn whitened(triangle: &[Vec<f64>], row: &[f64]) -> Vec<f64> {
     let mut u: Vec<f64> = Vec::with_capacity(row.len());
     for (column, value) in triangle.iter().zip(row) {
         let rest = value - dot(&column[..u.len()], &u);
         u.push(rest / column[u.len()]);
     }
-    dot(&u, &u)
+    u
 }
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -40,7 +40,7 @@ pub struct Columns {
 }
 
 /// Measured beads.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measured {
     /// Comment lines of the file, without their `#`.
     pub remarks: Vec<String>,
@@ -52,7 +52,12 @@ pub struct Measured {
     pub widths: Vec<f64>,
     /// Height of every bead, mm.
     pub heights: Vec<f64>,
+    /// Number of lines left out because width and height are empty: trials that were not welded, or not measured yet.
+    pub unmeasured: usize,
 }
+
+/// Columns of a trial sheet that are no process parameters, and the beginning of others.
+const BOOKKEEPING: [&str; 5] = ["bead", "plate", "block", "remarks", "measured"];
 
 /// A column of the header.
 struct Column {
@@ -60,6 +65,16 @@ struct Column {
     header: String,
     name: String,
     unit: String,
+}
+
+impl Column {
+    fn is_bookkeeping(&self) -> bool {
+        BOOKKEEPING.iter().any(|word| {
+            self.name
+                .strip_prefix(word)
+                .is_some_and(|rest| rest.is_empty() || *word == "measured" && rest.starts_with('_'))
+        })
+    }
 }
 
 /// A line split into fields.
@@ -85,19 +100,25 @@ impl Measured {
         let height = find(&header, columns.height.as_deref().unwrap_or("height"))?;
         let inputs = match &columns.inputs {
             Some(names) => names.iter().map(|n| find(&header, n)).collect::<Result<Vec<_>, _>>()?,
-            None => (0..header.len()).filter(|&i| i != width && i != height).collect(),
+            None => (0..header.len()).filter(|&i| i != width && i != height && !header[i].is_bookkeeping()).collect(),
         };
         check_roles(&header, &inputs, width, height, head.line)?;
         if body.is_empty() {
             return Err(LibraryError::Empty { reason: "no line with values follows the names of the columns.".into() });
         }
-        let mut measured =
-            Self { remarks, inputs: Vec::new(), rows: Vec::new(), widths: Vec::new(), heights: Vec::new() };
+        let mut measured = Self { remarks, ..Self::default() };
         for record in body {
+            if [width, height].iter().all(|i| record.fields.get(*i).is_some_and(String::is_empty)) {
+                measured.unmeasured += 1;
+                continue;
+            }
             let reader = Cells { header: &header, record, decimal_comma: separator != ',' };
             measured.rows.push(inputs.iter().map(|&i| reader.number(i)).collect::<Result<_, _>>()?);
             measured.widths.push(reader.length(width)?);
             measured.heights.push(reader.length(height)?);
+        }
+        if measured.rows.is_empty() {
+            return Err(LibraryError::Empty { reason: "no bead has a width and a height yet.".into() });
         }
         let range = |k: usize| {
             let values = || measured.rows.iter().map(|r| r[k]);
@@ -146,14 +167,18 @@ fn check_roles(
 /// Separator, and the lines that are neither empty nor comments.
 fn split(text: &str) -> Result<(char, Vec<Record>), LibraryError> {
     let lines = || text.lines().enumerate().filter(|(_, l)| !l.trim().is_empty() && !l.trim_start().starts_with('#'));
-    let first = lines().next().map_or("", |(_, l)| l);
-    let separator = ['\t', ';'].into_iter().find(|s| first.contains(*s)).unwrap_or(',');
+    let separator = separator(lines().next().map_or("", |(_, l)| l));
     let records = lines().map(|(i, l)| Ok(Record { line: i + 1, fields: fields(l, separator, i + 1)? }));
     Ok((separator, records.collect::<Result<_, LibraryError>>()?))
 }
 
-/// The fields of a line. A quoted field may hold separators; two quotes inside it stand for one.
-fn fields(line: &str, separator: char, number: usize) -> Result<Vec<String>, LibraryError> {
+/// What separates the fields of a table with this header.
+pub(crate) fn separator(header: &str) -> char {
+    ['\t', ';'].into_iter().find(|s| header.contains(*s)).unwrap_or(',')
+}
+
+/// The fields of a line, `number` of the file. A quoted field may hold separators; two quotes inside it stand for one.
+pub(crate) fn fields(line: &str, separator: char, number: usize) -> Result<Vec<String>, LibraryError> {
     let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
     let mut letters = line.chars().peekable();
     while let Some(letter) = letters.next() {

@@ -10,6 +10,7 @@
 //! | `measured` | CSV to measured beads |
 //! | `fit` | which terms the measurements allow, the fit and how good it is |
 //! | `solve` | parameters for a wanted bead |
+//! | `next` | which trial to weld next |
 //! | `demonstration` | invented measurements to try it with |
 //! | `least_squares`, `student` | Householder QR; Student's t |
 
@@ -18,6 +19,7 @@ mod error;
 mod fit;
 mod least_squares;
 mod measured;
+mod next;
 mod printed;
 mod solve;
 mod student;
@@ -25,6 +27,7 @@ mod student;
 pub use demonstration::demonstration_csv;
 pub use error::LibraryError;
 pub use measured::{Columns, Measured};
+pub(crate) use measured::{fields, separator};
 pub use printed::{PrintedRow, median, printed_rows};
 pub use solve::{Layering, Limit, PREFERRED_RATIOS, Recipe, Wish};
 

@@ -22,7 +22,7 @@ pub(in crate::dialect) fn lines(
     let ends = &job.weld.ends;
     let why = match job.weld.process.follow {
         Follow::WireFeed => Some("process.follow = \"wire-feed\""),
-        Follow::Speed if !job.weld.process.layers.is_empty() => Some("[[process.layers]]"),
+        Follow::Speed if job.weld.process.feeds_by_layer() => Some("[[process.layers]]"),
         Follow::Speed => ends.crater_is_weaker().then_some("a start_stop.crater_power below 1"),
     };
     if let Some(why) = why.filter(|_| lines_of("wire_feed").next().is_none()) {

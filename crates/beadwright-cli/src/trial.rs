@@ -1,0 +1,266 @@
+//! `beadwright bead trial`: programs for trial beads, and the sheet for the measurements.
+
+use crate::{file, profile, program, progress};
+use anyhow::Context;
+use beadwright::Layer;
+use beadwright::adapt::scan;
+use beadwright::files::{Folder, PLAN, write_file};
+use beadwright::number::fixed;
+use beadwright::trial::{self, Design, Factor, Plate, PlatePlan, Series, Shape, Spacing};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    wanted: profile::Wanted,
+    /// What is varied: deposition_speed (mm/s), wire_feed_speed (m/min), job (values one by one: job=11,12,15), and for some shapes
+    /// stepover, dwell (s) or angle (°); may be given several times.
+    #[arg(long, required = true, value_name = "NAME=MIN..MAX")]
+    vary: Vec<Factor>,
+    /// What is welded with each combination.
+    #[arg(long, value_enum, default_value_t = Welded::Bead)]
+    shape: Welded,
+    /// Which combinations are welded.
+    #[arg(long, value_enum, default_value_t = Chosen::Factorial)]
+    design: Chosen,
+    /// Values of each factor in a factorial design.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(2..=20), value_name = "N")]
+    levels: u16,
+    /// Number of combinations in a Latin hypercube.
+    #[arg(long, default_value_t = 12, value_parser = clap::value_parser!(u16).range(2..=500), value_name = "N")]
+    combinations: u16,
+    /// How often each combination is welded; each time in another random order.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=20), value_name = "N")]
+    repeats: u16,
+    /// Beads side by side of an overlap.
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(2..=20), value_name = "N")]
+    beads: u16,
+    /// Layers of a wall.
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(2..=500), value_name = "N")]
+    layers: u16,
+    /// Length of a bead, mm.
+    #[arg(long, default_value_t = 100.0, value_parser = parse_length, value_name = "MM")]
+    length: f64,
+    /// Size of the plate, mm.
+    #[arg(long, default_value = "400x250", value_parser = parse_size, value_name = "LENGTHxWIDTH")]
+    plate: (f64, f64),
+    /// Width of the edges of the plate where nothing is welded, mm.
+    #[arg(long, default_value_t = 20.0, value_name = "MM")]
+    margin: f64,
+    /// Least distance between trials, mm.
+    #[arg(long, default_value_t = 12.0, value_name = "MM")]
+    gap: f64,
+    /// Time the torch waits before each trial so that the plate cools, s.
+    #[arg(long, default_value_t = 60.0, value_name = "S")]
+    wait: f64,
+    /// Do not number the trials in weld metal.
+    #[arg(long)]
+    no_numbers: bool,
+    /// Seed of the random order: the same seed gives the same plates.
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
+    /// Languages of the programs; those of the profile if left out.
+    #[arg(long, value_delimiter = ',', value_name = "POST,…")]
+    post: Vec<String>,
+    /// Folder to write to.
+    #[arg(short, long, default_value = "trial", value_name = "FOLDER")]
+    output: PathBuf,
+}
+
+#[derive(clap::Args)]
+pub(crate) struct Measure {
+    /// Sheet that `bead trial` wrote, in the same folder as the plates.
+    sheet: PathBuf,
+    /// Scan of the plate in the coordinates of its program: STL, PLY or points, mm.
+    scan: PathBuf,
+    /// Number of the plate.
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    plate: usize,
+    /// Sheet to write; the same one if left out.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum Welded {
+    /// Single beads, for width and height.
+    Bead,
+    /// Beads side by side, for the stepover.
+    Overlap,
+    /// Walls of one bead a layer, for how they grow with the waits between layers.
+    Wall,
+    /// Two legs that meet at an angle.
+    Corner,
+}
+
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum Chosen {
+    /// Every combination of --levels values of each factor.
+    Factorial,
+    /// Middles of the edges of the range, and its middle three times; three to five factors.
+    BoxBehnken,
+    /// --combinations points that fill the range evenly.
+    LatinHypercube,
+}
+
+/// How far from its planned middle a bead is sought, in planned widths.
+const REACH: f64 = 1.3;
+/// Longest series that makes sense.
+const MOST: usize = 2000;
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let name = arguments.wanted.profile.as_deref().unwrap_or(profile::USUAL);
+    let own = profile::load(name, &arguments.wanted.set)?;
+    let plate = Plate { length: arguments.plate.0, width: arguments.plate.1, margin: arguments.margin };
+    anyhow::ensure!(
+        [arguments.margin, arguments.gap, arguments.wait].iter().all(|value| (0.0..=10_000.0).contains(value)),
+        "--margin, --gap and --wait lie between 0 and 10000."
+    );
+    let series = series(arguments, &own, plate)?;
+    let title = format!("Trials with {}", own.name);
+    let posts = if arguments.post.is_empty() { &own.posts } else { &arguments.post };
+    let folder = if arguments.post.is_empty() { profile::folder(name) } else { PathBuf::new() };
+    let plans: Vec<PlatePlan> = (0..series.plates()).map(|index| PlatePlan::new(&series, index, &own)).collect();
+    let mut plates = Vec::new();
+    for plan in &plans {
+        let programs = profile::programs(posts, &folder, &plan.profile.job(&plan.name))?;
+        let mut folder = Folder::new(&arguments.output.join(&plan.name))?;
+        folder.extend(plan.files(programs)?)?;
+        plates.push(folder);
+    }
+    for folder in plates {
+        folder.commit()?;
+    }
+    let sheet = trial::csv(&title, series.shape, &series.factors, &series.trials, arguments.length);
+    write_file(&arguments.output.join("sheet.csv"), sheet.as_bytes())?;
+    write_file(&arguments.output.join("sheet.html"), trial::page(&title, &series, plate).html().as_bytes())?;
+    say(arguments, &series, &plans)
+}
+
+fn series(arguments: &Arguments, profile: &beadwright::Profile, plate: Plate) -> anyhow::Result<Series> {
+    let factors = arguments.vary.clone();
+    if let Some(twice) = factors
+        .iter()
+        .enumerate()
+        .find(|(k, factor)| factors[..*k].iter().any(|other| other.parameter == factor.parameter))
+    {
+        anyhow::bail!("--vary {}: it is given twice.", twice.1.parameter);
+    }
+    let shape = match arguments.shape {
+        Welded::Bead => Shape::Bead,
+        Welded::Overlap => Shape::Overlap(arguments.beads.into()),
+        Welded::Wall => Shape::Wall(arguments.layers.into()),
+        Welded::Corner => Shape::Corner,
+    };
+    let design = match arguments.design {
+        Chosen::Factorial => Design::Factorial(arguments.levels.into()),
+        Chosen::BoxBehnken => Design::BoxBehnken,
+        Chosen::LatinHypercube => Design::LatinHypercube(arguments.combinations.into()),
+    };
+    let combinations = trial::points(design, &factors, arguments.seed).with_context(|| {
+        format!(
+            "--design box-behnken needs three to five factors, and {} are given. Use another design.",
+            factors.len()
+        )
+    })?;
+    let count = combinations.len() * usize::from(arguments.repeats);
+    anyhow::ensure!(
+        count <= MOST,
+        "{count} trials are more than the {MOST} that can be numbered: use fewer --levels, or --design latin-hypercube."
+    );
+    let spacing =
+        Spacing { length: arguments.length, gap: arguments.gap, wait: arguments.wait, numbers: !arguments.no_numbers };
+    let process = (&profile.process, profile.bead.width, profile.layers.height);
+    let repeats = arguments.repeats.into();
+    Ok(Series::new((factors, &combinations), (shape, repeats), (plate, spacing), process, arguments.seed)?)
+}
+
+fn say(arguments: &Arguments, series: &Series, plans: &[PlatePlan]) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let (plates, folder) = (plans.len(), arguments.output.display());
+    writeln!(
+        out,
+        "{} trials in random order (seed {}) on {plates} {} of {} × {} mm\n",
+        series.trials.len(),
+        arguments.seed,
+        if plates == 1 { "plate" } else { "plates" },
+        arguments.plate.0,
+        arguments.plate.1,
+    )?;
+    for (k, plan) in plans.iter().enumerate() {
+        let own: Vec<usize> = series.trials.iter().filter(|trial| trial.plate == k).map(|trial| trial.number).collect();
+        let (first, last) = (own.first().copied().unwrap_or(0), own.last().copied().unwrap_or(0));
+        let metrics = plan.metrics();
+        writeln!(
+            out,
+            "  {folder}/{}: trials {first} to {last}, {} arc starts, {} min of arc, {} min in all",
+            plan.name,
+            metrics.arc_starts,
+            fixed(metrics.arc_time_s / 60.0, 1),
+            fixed(metrics.total_time_s / 60.0, 0),
+        )?;
+    }
+    let fit = match series.shape {
+        Shape::Bead => format!("Fill in {folder}/sheet.csv, then: beadwright bead fit {folder}/sheet.csv"),
+        Shape::Wall(_) => {
+            format!("Fill in {folder}/sheet.csv, then: beadwright bead walls {folder}/sheet.csv -p PROFILE")
+        }
+        Shape::Overlap(_) | Shape::Corner => format!("Fill in {folder}/sheet.csv."),
+    };
+    Ok(writeln!(out, "\n{folder}/sheet.html shows what lies where. {fit}")?)
+}
+
+fn parse_size(text: &str) -> Result<(f64, f64), String> {
+    let sides = text.split_once(['x', '×']).and_then(|(a, b)| Some((a.trim().parse().ok()?, b.trim().parse().ok()?)));
+    match sides {
+        Some((length, width)) if [length, width].iter().all(|side| (20.0..=10_000.0).contains(side)) => {
+            Ok((length, width))
+        }
+        _ => Err("two lengths of 20 to 10000 mm are expected, such as 400x250".to_owned()),
+    }
+}
+
+fn parse_length(text: &str) -> Result<f64, String> {
+    let length: f64 = text.parse().map_err(|_| "a length in mm is expected".to_owned())?;
+    if (10.0..=10_000.0).contains(&length) { Ok(length) } else { Err("it must lie between 10 and 10000 mm".to_owned()) }
+}
+
+pub(crate) fn measure(arguments: &Measure) -> anyhow::Result<()> {
+    let text = file::text(&arguments.sheet)?;
+    let folder = arguments.sheet.parent().unwrap_or(Path::new("")).join(format!("trial_{}", arguments.plate));
+    let source = program::Source::open(&folder.join(PLAN))?;
+    let plan = source.plan().with_context(|| format!("{} holds no plan.json", folder.display()))?;
+    // The last layer may be numbers: a trial is one bead.
+    let bead = |layer: &Layer| match &layer.passes[..] {
+        [pass] if pass.points.len() == 2 => Some([pass.points[0].truncate(), pass.points[1].truncate()]),
+        _ => None,
+    };
+    let beads: Vec<_> = plan.layers.iter().map_while(bead).collect();
+    let (task, bar) = progress::task()?;
+    let named = || arguments.scan.display().to_string();
+    let scan = scan::read(&file::read(&arguments.scan)?, &task).with_context(named)?;
+    bar.finish_and_clear();
+    let reach = plan.layers.first().and_then(|layer| layer.passes.first()).map_or(0.0, |pass| REACH * pass.width.max());
+    let sizes = trial::measured(&scan.points, &beads, reach).with_context(named)?;
+    let sheet = trial::filled(&text, arguments.plate, &sizes).with_context(|| arguments.sheet.display().to_string())?;
+    let output = arguments.output.as_ref().unwrap_or(&arguments.sheet);
+    write_file(output, sheet.as_bytes())?;
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "  bead on the plate   width mm  varies   height mm  varies")?;
+    for (k, size) in sizes.iter().enumerate() {
+        match size {
+            Some(size) => writeln!(
+                out,
+                "  {:17} {:10.2} {:7.2} {:11.2} {:7.2}",
+                k + 1,
+                size.width,
+                size.width_varies,
+                size.height,
+                size.height_varies
+            )?,
+            None => writeln!(out, "  {:17} not seen in the scan", k + 1)?,
+        }
+    }
+    Ok(writeln!(out, "\nfilled in {}", output.display())?)
+}

@@ -1,0 +1,30 @@
+//! Trial beads: what to weld on plates in order to learn how a wire behaves, and the sheet for the measurements.
+//!
+//! A [`Design`] says which combinations of the [`Factor`]s are welded; [`Series`] lays each as a [`Shape`] on a plate, in
+//! random order within each block, and numbers it in weld metal. Every trial is a layer of its own, since the wire feed and
+//! the job of a plan change from layer to layer.
+//!
+//! | file | what it holds |
+//! | --- | --- |
+//! | `factor` | process parameters that are varied, and their values |
+//! | `design` | full factorial, Box–Behnken, Latin hypercube |
+//! | `shape` | what is welded with each combination: beads, overlaps, walls, corners |
+//! | `digits` | numbers as strokes |
+//! | `plate` | where everything lies on the plates, as layers |
+//! | `sheet` | the table to fill in |
+//! | `measure` | beads measured in a scan of the plate |
+
+mod design;
+mod digits;
+mod factor;
+mod measure;
+mod plate;
+mod shape;
+mod sheet;
+
+pub use design::{Design, points};
+pub use factor::{Factor, FactorError, Parameter};
+pub use measure::{BeadSize, MeasureError, measured};
+pub use plate::{Placed, Plate, PlateError, Series, Spacing};
+pub use shape::Shape;
+pub use sheet::{SheetError, csv, filled};

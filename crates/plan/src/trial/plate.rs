@@ -1,0 +1,273 @@
+//! Where the trials lie on the plates, and the layers that weld them.
+
+use super::design::shuffled;
+use super::digits;
+use super::shape::{Stroke, bounds, raised};
+use super::{Factor, Parameter, Shape};
+use crate::layer::Layer;
+use crate::pass::{Along, Pass, PassKind};
+use crate::process::{LayerProcess, Process};
+use crate::random::Random;
+use glam::DVec2;
+use planar::{Polygon, Ring};
+
+/// A plate, mm; its lower left corner is the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plate {
+    /// Along x, mm.
+    pub length: f64,
+    /// Along y, mm.
+    pub width: f64,
+    /// At all edges, mm: where clamps grip and nothing is welded.
+    pub margin: f64,
+}
+
+/// Lengths and times between trials.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spacing {
+    /// Length of a bead, of a leg pair of a corner, mm.
+    pub length: f64,
+    /// Least distance between the beads of two trials, mm.
+    pub gap: f64,
+    /// Time the torch waits before each trial so that the plate cools, s.
+    pub wait: f64,
+    /// Whether each trial is numbered in weld metal, once all of its plate are welded.
+    pub numbers: bool,
+}
+
+/// A trial on its plate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placed {
+    /// Its number, from 1: the order of welding.
+    pub number: usize,
+    /// Its block, from 0: each has every combination once.
+    pub block: usize,
+    /// Its plate, from 0.
+    pub plate: usize,
+    /// A value for each factor.
+    pub values: Vec<f64>,
+    /// Its paths as seen from above, mm on the plate.
+    pub paths: Vec<Vec<DVec2>>,
+    /// Width of its beads, if they are as high as the nominal one, mm.
+    pub width: f64,
+    /// Where its number is welded: the lower left corner, mm.
+    pub label: DVec2,
+}
+
+/// Trials on plates.
+#[derive(Debug, Clone)]
+pub struct Series {
+    /// What is varied.
+    pub factors: Vec<Factor>,
+    /// What is welded.
+    pub shape: Shape,
+    /// The trials in the order of welding.
+    pub trials: Vec<Placed>,
+    spacing: Spacing,
+    process: Process,
+    /// Width of the nominal bead, and the layer height, mm.
+    width: f64,
+    height: f64,
+}
+
+/// Beads may become this much wider than they should; the plate has room for these.
+const WIDEST: f64 = 1.4;
+
+impl Series {
+    /// Places each combination `repeats` times, in a block each, in random order within the block. The process is the nominal
+    /// one, which lays beads of width `width` in layers `height` thick, mm.
+    ///
+    /// # Errors
+    /// [`PlateError`] where a factor does not belong to the shape, or a trial is larger than the plate.
+    pub fn new(
+        (factors, combinations): (Vec<Factor>, &[Vec<f64>]),
+        (shape, repeats): (Shape, usize),
+        (plate, spacing): (Plate, Spacing),
+        (process, width, height): (&Process, f64, f64),
+        seed: u64,
+    ) -> Result<Self, PlateError> {
+        if let Some(strange) = factors.iter().find(|factor| !shape.allows(factor.parameter)) {
+            return Err(PlateError::Factor(strange.parameter));
+        }
+        let mut random = Random::new(seed);
+        let process = process.clone();
+        let mut series = Self { factors, shape, trials: Vec::new(), spacing, process, width, height };
+        for block in 0..repeats {
+            for k in shuffled(combinations.len(), &mut random) {
+                let number = series.trials.len() + 1;
+                let values = combinations[k].clone();
+                let paths = series.strokes(&values).into_iter().map(|stroke| stroke.points).collect();
+                let width = series.bead(&values);
+                series.trials.push(Placed { number, block, plate: 0, values, paths, width, label: DVec2::ZERO });
+            }
+        }
+        // Blocks begin on plates of their own where each fits on one.
+        series.place(plate, true)?;
+        if series.plates() > repeats {
+            series.place(plate, false)?;
+        }
+        Ok(series)
+    }
+
+    fn value(&self, values: &[f64], parameter: Parameter) -> Option<f64> {
+        self.factors.iter().zip(values).find(|(factor, _)| factor.parameter == parameter).map(|(_, value)| *value)
+    }
+
+    /// The speed of the torch, mm/s, and the wire feed over the nominal one.
+    fn speed_and_feed(&self, values: &[f64]) -> (f64, f64) {
+        let value = |parameter| self.value(values, parameter);
+        let speed = value(Parameter::DepositionSpeed).unwrap_or(self.process.deposition_speed);
+        (speed, value(Parameter::WireFeedSpeed).map_or(1.0, |feed| feed / self.process.wire_feed_speed))
+    }
+
+    /// Width of a bead that is as high as the nominal one, mm: the metal of the wire.
+    fn bead(&self, values: &[f64]) -> f64 {
+        let (speed, feed) = self.speed_and_feed(values);
+        self.width * feed * self.process.deposition_speed / speed
+    }
+
+    fn strokes(&self, values: &[f64]) -> Vec<Stroke> {
+        self.shape.strokes(self.spacing.length, self.bead(values), |parameter| self.value(values, parameter))
+    }
+
+    /// Rows from below, each from the left: number, then trial.
+    fn place(&mut self, plate: Plate, apart: bool) -> Result<(), PlateError> {
+        let gap = self.spacing.gap;
+        let room = DVec2::new(plate.length, plate.width) - 2.0 * plate.margin;
+        // The corner of the next trial, and the top of the row so far, from the corner of the room.
+        let (mut corner, mut top, mut on, mut block) = (DVec2::ZERO, 0.0_f64, 0, 0);
+        for trial in &mut self.trials {
+            let widest = WIDEST * trial.width.max(self.width);
+            let number = if self.spacing.numbers { digits::size(trial.number, self.width) } else { DVec2::ZERO };
+            let label = if self.spacing.numbers { number + widest + DVec2::X * gap } else { DVec2::ZERO };
+            let (low, high) = bounds(trial.paths.iter().map(Vec::as_slice));
+            let own = high - low + widest;
+            let size = DVec2::new(label.x + own.x, own.y.max(label.y));
+            if size.x > room.x || size.y > room.y {
+                return Err(PlateError::Small { number: trial.number, needs: size + 2.0 * plate.margin, plate });
+            }
+            if apart && trial.block != block {
+                (corner, top, on, block) = (DVec2::ZERO, 0.0, on + 1, trial.block);
+            }
+            if corner.x + size.x > room.x {
+                (corner, top) = (DVec2::new(0.0, top + gap), 0.0);
+            }
+            if corner.y + size.y > room.y {
+                (corner, top, on) = (DVec2::ZERO, 0.0, on + 1);
+            }
+            let at = plate.margin + corner;
+            trial.plate = on;
+            trial.label = at + DVec2::new(widest / 2.0, (size.y - number.y) / 2.0);
+            let by = at + DVec2::new(label.x, (size.y - own.y) / 2.0) + widest / 2.0 - low;
+            trial.paths.iter_mut().flatten().for_each(|p| *p += by);
+            (corner.x, top) = (corner.x + size.x + gap, top.max(corner.y + size.y));
+        }
+        Ok(())
+    }
+
+    /// Number of plates.
+    pub fn plates(&self) -> usize {
+        self.trials.last().map_or(0, |trial| trial.plate + 1)
+    }
+
+    /// The layers of a plate, each trial a body of its own, and the process with a row for each whose wire feed or job differs
+    /// from the nominal one.
+    pub fn layers(&self, plate: usize) -> (Vec<Layer>, Process) {
+        let (mut layers, mut process) = (Vec::new(), self.process.clone());
+        process.layers.clear();
+        let trials = || self.trials.iter().filter(|trial| trial.plate == plate);
+        for (body, trial) in trials().enumerate() {
+            let (speed, rate) = self.speed_and_feed(&trial.values);
+            let job = self.value(&trial.values, Parameter::Job).map(|job| job as u32);
+            let dwell = self.value(&trial.values, Parameter::Dwell).unwrap_or(0.0);
+            let from = layers.len() + 1;
+            let strokes = self.strokes(&trial.values);
+            let high = strokes.iter().map(|stroke| stroke.layer + 1).max().unwrap_or(0);
+            for level in 0..high {
+                let own = strokes.iter().zip(&trial.paths).filter(|(stroke, _)| stroke.layer == level);
+                let paths: Vec<&[DVec2]> = own.map(|(_, path)| path.as_slice()).collect();
+                let wait = if level > 0 { dwell } else { self.spacing.wait };
+                let laid = Laid { level, width: trial.width, pace: speed / rate, wait };
+                layers.push(Layer { body, ..self.layer(layers.len(), &paths, &laid) });
+            }
+            if rate != 1.0 || job.is_some() {
+                let deposition_speed = rate * self.process.deposition_speed;
+                process.layers.push(LayerProcess { from, to: layers.len(), deposition_speed, current: None, job });
+            }
+        }
+        if self.spacing.numbers {
+            let numbers = trials().flat_map(|trial| digits::strokes(trial.number, trial.label, self.width));
+            let numbers: Vec<Vec<DVec2>> = numbers.collect();
+            let paths: Vec<&[DVec2]> = numbers.iter().map(Vec::as_slice).collect();
+            let (pace, wait) = (self.process.deposition_speed, self.spacing.wait);
+            let laid = Laid { level: 0, width: self.width, pace, wait };
+            layers.push(Layer { body: trials().count(), ..self.layer(layers.len(), &paths, &laid) });
+        }
+        (layers, process)
+    }
+
+    fn layer(&self, index: usize, paths: &[&[DVec2]], laid: &Laid) -> Layer {
+        let (z, width) = ((laid.level + 1) as f64 * self.height, laid.width);
+        let islands: Vec<Polygon> = paths.iter().map(|path| around(path, width)).collect();
+        let pass = |(k, path): (usize, &&[DVec2])| Pass {
+            kind: PassKind::Wall,
+            closed: false,
+            points: raised(path, DVec2::ZERO, z),
+            width: Along::Same(width),
+            pace: Along::Same(laid.pace),
+            wait: if k == 0 && index > 0 { laid.wait } else { 0.0 },
+        };
+        let area = islands.iter().map(Polygon::area).sum();
+        Layer {
+            index,
+            z,
+            height: self.height,
+            passes: paths.iter().enumerate().map(pass).collect(),
+            slice_area: area,
+            planned_area: area,
+            islands,
+            ..Layer::default()
+        }
+    }
+}
+
+/// How the beads of a layer are laid.
+struct Laid {
+    /// Number of layers of the trial below.
+    level: usize,
+    /// Width, mm.
+    width: f64,
+    /// Pace, mm/s.
+    pace: f64,
+    /// Time the torch waits before the first, s.
+    wait: f64,
+}
+
+/// The box around a bead, mm.
+fn around(path: &[DVec2], width: f64) -> Polygon {
+    let (low, high) = bounds(std::iter::once(path));
+    let [low, high] = [low - width / 2.0, high + width / 2.0];
+    Polygon::simple(Ring::new(vec![low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)]))
+}
+
+/// Why trials cannot be laid.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PlateError {
+    /// A factor of another shape.
+    #[error("{0} cannot be varied here: stepover belongs to overlaps, dwell to walls, angle to corners (--shape).")]
+    Factor(Parameter),
+    /// A trial that does not fit.
+    #[error(
+        "trial {number} needs a plate of {:.0} × {:.0} mm, edges included, and the plate has {:.0} × {:.0} mm. Give a larger \
+         one (--plate), or make the trials shorter (--length).",
+        .needs.x, .needs.y, .plate.length, .plate.width
+    )]
+    Small {
+        /// The first that does not fit.
+        number: usize,
+        /// The least size of a plate for it, mm.
+        needs: DVec2,
+        /// The plate.
+        plate: Plate,
+    },
+}

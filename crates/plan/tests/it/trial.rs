@@ -1,0 +1,413 @@
+//! Trial beads: designs hold what their authors ask of them, plates have room for everything, sheets are fitted as they are.
+
+use bead_plan::bead::library::{BeadLibrary, Columns, Measured};
+use bead_plan::random::Random;
+use bead_plan::trial::{self, BeadSize, Design, Factor, Parameter, Plate, Series, Shape, Spacing, points};
+use glam::DVec3;
+use planar::DVec2;
+use std::collections::BTreeSet;
+
+const BEAD: f64 = 6.0;
+
+fn factors(texts: &[&str]) -> Vec<Factor> {
+    texts.iter().map(|text| text.parse().unwrap()).collect()
+}
+
+fn series(texts: &[&str], shape: Shape, repeats: usize, seed: u64) -> Series {
+    let factors = factors(texts);
+    let combinations = points(Design::Factorial(3), &factors, seed).unwrap();
+    let plate = Plate { length: 400.0, width: 250.0, margin: 20.0 };
+    let spacing = Spacing { length: 90.0, gap: 10.0, wait: 60.0, numbers: true };
+    Series::new((factors, &combinations), (shape, repeats), (plate, spacing), (&process(), BEAD, 2.0), seed).unwrap()
+}
+
+#[test]
+fn a_full_factorial_has_each_combination_once() {
+    let factors = factors(&["deposition_speed=6..12", "job=3,5,8,13", "wire_feed_speed=5..7"]);
+    let found = points(Design::Factorial(3), &factors, 1).unwrap();
+    assert_eq!(found.len(), 3 * 4 * 3);
+    let different: BTreeSet<String> = found.iter().map(|point| format!("{point:?}")).collect();
+    assert_eq!(different.len(), found.len());
+    let of = |k: usize| found.iter().map(|point| point[k].to_string()).collect::<BTreeSet<_>>();
+    assert_eq!(of(0), ["12", "6", "9"].map(str::to_owned).into());
+    assert_eq!(of(1), ["13", "3", "5", "8"].map(str::to_owned).into());
+}
+
+/// Box and Behnken 1960: 12, 24 and 40 edges, each factor at each end equally often, any two of them independent, no corner.
+#[test]
+fn a_box_behnken_design_is_balanced_and_leaves_out_the_corners() {
+    let names =
+        ["deposition_speed=0.5..1.5", "wire_feed_speed=0.5..1.5", "stepover=0.5..1.5", "dwell=0..1", "angle=10..12"];
+    for (count, edges) in [(3, 12), (4, 24), (5, 40)] {
+        let factors = factors(&names[..count]);
+        let found = points(Design::BoxBehnken, &factors, 1).unwrap();
+        assert_eq!(found.len(), edges + 3);
+        let coded = |point: &Vec<f64>| -> Vec<f64> {
+            point
+                .iter()
+                .zip(&factors)
+                .map(|(v, factor)| 2.0 * (v - factor.at(0.0)) / (factor.at(1.0) - factor.at(0.0)) - 1.0)
+                .collect()
+        };
+        let coded: Vec<Vec<f64>> = found.iter().map(coded).collect();
+        for a in 0..count {
+            assert!(coded.iter().map(|point| point[a]).sum::<f64>().abs() < 1e-9);
+            for b in 0..a {
+                assert!(coded.iter().map(|point| point[a] * point[b]).sum::<f64>().abs() < 1e-9);
+            }
+        }
+        assert!(coded.iter().all(|point| point.iter().filter(|v| v.abs() > 0.5).count() <= 2));
+    }
+    assert!(points(Design::BoxBehnken, &factors(&names[..2]), 1).is_none());
+}
+
+#[test]
+fn a_latin_hypercube_has_each_value_once_and_no_two_points_together() {
+    for seed in 0..20 {
+        let factors = factors(&["deposition_speed=6..12", "wire_feed_speed=5..8"]);
+        let found = points(Design::LatinHypercube(13), &factors, seed).unwrap();
+        for k in 0..2 {
+            let mut own: Vec<f64> = found.iter().map(|point| point[k]).collect();
+            own.sort_by(f64::total_cmp);
+            let (low, high) = (factors[k].at(0.0), factors[k].at(1.0));
+            for (i, value) in own.iter().enumerate() {
+                assert!((value - (low + (high - low) * i as f64 / 12.0)).abs() < 1e-3, "{seed}: {own:?}");
+            }
+        }
+        let apart = |a: &Vec<f64>, b: &Vec<f64>| ((a[0] - b[0]) / 6.0).hypot((a[1] - b[1]) / 3.0);
+        let least = found.iter().enumerate().flat_map(|(i, a)| found[..i].iter().map(move |b| apart(a, b)));
+        assert!(least.fold(f64::MAX, f64::min) > 0.15, "{seed}");
+        assert_eq!(found, points(Design::LatinHypercube(13), &factors, seed).unwrap());
+    }
+}
+
+/// Distance of two polylines, mm, from points on them.
+fn between(a: &[DVec2], b: &[DVec2]) -> f64 {
+    let dense = |line: &[DVec2]| -> Vec<DVec2> {
+        line.windows(2).flat_map(|w| (0..=40).map(move |k| w[0].lerp(w[1], f64::from(k) / 40.0))).collect()
+    };
+    let (a, b) = (dense(a), dense(b));
+    a.iter().flat_map(|p| b.iter().map(|q| p.distance(*q))).fold(f64::MAX, f64::min)
+}
+
+#[test]
+fn trials_and_their_numbers_lie_apart_on_their_plates_in_an_order_of_their_own() {
+    let all: [(&[&str], Shape); 4] = [
+        (&["deposition_speed=6..12", "wire_feed_speed=5..8"], Shape::Bead),
+        (&["stepover=0.6..0.8", "deposition_speed=6..9"], Shape::Overlap(4)),
+        (&["dwell=0..120"], Shape::Wall(12)),
+        (&["angle=20..150", "deposition_speed=6..9"], Shape::Corner),
+    ];
+    for (texts, shape) in all {
+        let mut orders = BTreeSet::new();
+        for seed in 1..6 {
+            let series = series(texts, shape, 2, seed);
+            let case = format!("{shape:?} {seed}");
+            let numbers: Vec<usize> = series.trials.iter().map(|trial| trial.number).collect();
+            assert_eq!(numbers, (1..=series.trials.len()).collect::<Vec<_>>(), "{case}");
+            // Each block has the same combinations.
+            let of = |block: usize| -> BTreeSet<String> {
+                series
+                    .trials
+                    .iter()
+                    .filter(|trial| trial.block == block)
+                    .map(|trial| format!("{:?}", trial.values))
+                    .collect()
+            };
+            assert_eq!(of(0), of(1), "{case}");
+            assert_eq!(2 * of(0).len(), series.trials.len(), "{case}");
+            orders.insert(format!("{:?}", series.trials.iter().map(|trial| trial.values.clone()).collect::<Vec<_>>()));
+            for plate in 0..series.plates() {
+                let (layers, process) = series.layers(plate);
+                assert_eq!(process.layers.iter().all(|row| row.from <= row.to), true, "{case}");
+                let lines: Vec<(usize, Vec<DVec2>)> = layers
+                    .iter()
+                    .flat_map(|layer| {
+                        layer
+                            .passes
+                            .iter()
+                            .map(|pass| (layer.index, pass.points.iter().map(|p| p.truncate()).collect()))
+                    })
+                    .collect();
+                let inside = |p: &DVec2| {
+                    (20.0 + BEAD / 2.0..380.0 - BEAD / 2.0).contains(&p.x)
+                        && (20.0 + BEAD / 2.0..230.0 - BEAD / 2.0).contains(&p.y)
+                };
+                assert!(lines.iter().flat_map(|(_, line)| line).all(inside), "{case}");
+                // Beads of different trials, and of numbers, do not touch.
+                let own: Vec<_> = series.trials.iter().filter(|trial| trial.plate == plate).collect();
+                let last = layers.len() - 1;
+                for (i, a) in own.iter().enumerate() {
+                    for b in &own[..i] {
+                        let near = a
+                            .paths
+                            .iter()
+                            .flat_map(|a| b.paths.iter().map(move |b| between(a, b)))
+                            .fold(f64::MAX, f64::min);
+                        assert!(near >= 10.0 + (a.width + b.width) / 2.0, "{case}: {} and {}", a.number, b.number);
+                    }
+                    for (_, number) in lines.iter().filter(|(layer, _)| *layer == last) {
+                        let near = a.paths.iter().map(|a| between(a, number)).fold(f64::MAX, f64::min);
+                        assert!(near >= (a.width + BEAD) / 2.0 + 1.0, "{case}: {} {near}", a.number);
+                    }
+                }
+            }
+        }
+        assert!(orders.len() > 1, "{shape:?}: the order is random");
+    }
+}
+
+fn process() -> bead_plan::process::Process {
+    serde_json::from_value(serde_json::json!({
+        "wire_feed_speed": 6.0, "deposition_speed": 8.0, "efficiency": 0.95, "arc_start_delay": 0.5, "arc_end_delay": 0.5,
+        "gas": "Ar", "gas_flow": 15.0, "gas_preflow": 0.5, "gas_postflow": 0.5, "ctwd": 15.0
+    }))
+    .unwrap()
+}
+
+/// Speed and wire feed of each bead are those of the sheet, whatever the nominal ones.
+#[test]
+fn each_bead_is_welded_as_its_line_in_the_sheet_says() {
+    let series = series(&["deposition_speed=6..12", "wire_feed_speed=4..9", "job=4,5"], Shape::Bead, 1, 3);
+    let nominal = process();
+    for plate in 0..series.plates() {
+        let (layers, process) = series.layers(plate);
+        let own: Vec<_> = series.trials.iter().filter(|trial| trial.plate == plate).collect();
+        for (trial, layer) in own.iter().zip(&layers) {
+            let here = process.at_layer(layer.index);
+            let pace = layer.passes[0].pace.max();
+            // The metal of the wire, as high as a nominal bead.
+            let metal = |feed: f64, speed: f64| feed / speed;
+            let wider = metal(trial.values[1], trial.values[0]) / metal(6.0, 8.0);
+            assert!((layer.passes[0].width.max() / BEAD - wider).abs() < 1e-9);
+            assert!((here.speed_at(pace) - trial.values[0]).abs() < 1e-9);
+            assert!((here.feed_at(pace) * nominal.wire_feed_speed - trial.values[1]).abs() < 1e-9);
+            assert_eq!(f64::from(here.job), trial.values[2]);
+            assert_eq!(layer.passes[0].points.len(), 2);
+            assert!((layer.passes[0].points[0].distance(layer.passes[0].points[1]) - 90.0).abs() < 1e-9);
+        }
+        // Numbers are welded as nominal.
+        let numbers = layers.last().unwrap();
+        let here = process.at_layer(numbers.index);
+        assert!((here.speed_at(numbers.passes[0].pace.max()) - 8.0).abs() < 1e-9 && here.rate() == 1.0);
+    }
+}
+
+/// Width and height, mm, by a law that no polynomial of second order is.
+fn truth(speed: f64, feed: f64) -> (f64, f64) {
+    let area = 0.95 * 1.131 * feed * 1000.0 / 60.0 / speed;
+    let ratio = 2.4 * (feed / 6.0).powf(0.35) * (speed / 8.0).powf(-0.15);
+    let width = (1.5 * area * ratio).sqrt();
+    (width, width / ratio)
+}
+
+/// The sheet with the measured beads filled in, as a welder would.
+fn filled(series: &Series, mut measured: impl FnMut(&[f64]) -> Option<(f64, f64)>) -> String {
+    let sheet = trial::csv("trials", series.shape, &series.factors, &series.trials, 90.0);
+    let mut trials = series.trials.iter();
+    let line = |line: &str| {
+        if line.starts_with('#') || line.starts_with("bead") {
+            return line.to_owned();
+        }
+        let trial = trials.next().unwrap();
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let Some((width, height)) = measured(&trial.values) {
+            let from = cells.len() - 5;
+            (cells[from], cells[from + 1]) = (format!("{width:.2}"), format!("{height:.2}"));
+            (cells[from + 2], cells[from + 4]) = ("121".to_owned(), "spatter".to_owned());
+        }
+        cells.join(",")
+    };
+    sheet.lines().map(line).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn a_sheet_is_fitted_as_it_is_and_lines_without_measurements_are_left_out() {
+    let series = series(&["deposition_speed=6..10", "wire_feed_speed=5..7"], Shape::Bead, 2, 1);
+    let mut count = 0;
+    let sheet = filled(&series, |values| {
+        count += 1;
+        (count % 6 != 0).then(|| truth(values[0], values[1]))
+    });
+    let measured = Measured::read(&sheet, &Columns::default()).unwrap();
+    assert_eq!((measured.rows.len(), measured.unmeasured), (15, 3));
+    let names: Vec<&str> = measured.inputs.iter().map(|input| input.name.as_str()).collect();
+    assert_eq!(names, ["deposition_speed", "wire_feed_speed"]);
+    let library = BeadLibrary::fit(&measured).unwrap();
+    assert!(library.notes.iter().any(|note| note.starts_with("3 beads without")), "{:?}", library.notes);
+    let found = library.predict(&[7.3, 5.6]).unwrap();
+    let (width, height) = truth(7.3, 5.6);
+    assert!((found.width.value / width - 1.0).abs() < 0.01 && (found.height.value / height - 1.0).abs() < 0.01);
+    // Nothing measured at all.
+    let empty = trial::csv("trials", series.shape, &series.factors, &series.trials, 90.0);
+    assert!(Measured::read(&empty, &Columns::default()).unwrap_err().to_string().contains("no bead"));
+}
+
+#[test]
+fn jobs_are_no_sizes_and_are_not_fitted() {
+    let series = series(&["deposition_speed=6..10", "job=3,4"], Shape::Bead, 2, 1);
+    let sheet = filled(&series, |values| Some(truth(values[0], values[1] + 2.0)));
+    let error = BeadLibrary::fit(&Measured::read(&sheet, &Columns::default()).unwrap()).unwrap_err();
+    assert!(error.to_string().contains("jobs of the power source have no order"), "{error}");
+}
+
+/// No point of the range, tried at random, has a larger leverage.
+#[test]
+fn the_next_trial_lies_where_the_fit_is_least_certain() {
+    let factors = factors(&["deposition_speed=6..12", "wire_feed_speed=5..8"]);
+    for seed in 0..10 {
+        let library = learned(Design::LatinHypercube(8), &factors, seed, 0, 0.0, None);
+        let (next, found) = library.next_trial(None);
+        let mut random = Random::new(seed);
+        for _ in 0..2000 {
+            let mut at =
+                |k: usize| library.inputs[k].min + random.unit() * (library.inputs[k].max - library.inputs[k].min);
+            let other = [at(0), at(1)];
+            if let Ok(other) = library.predict(&other) {
+                assert!(other.leverage <= found.leverage + 1e-9, "{seed}: {next:?} {other:?}");
+            }
+        }
+        assert!(library.inputs.iter().zip(&next).all(|(input, value)| (input.min..=input.max).contains(value)));
+    }
+}
+
+/// The library after the design and some more trials, each that which tells most, with this relative noise.
+fn learned(
+    design: Design,
+    factors: &[Factor],
+    seed: u64,
+    more: usize,
+    noise: f64,
+    wanted: Option<&[f64]>,
+) -> BeadLibrary {
+    let mut random = Random::new(seed + 1000);
+    let mut beads = points(design, factors, seed).unwrap();
+    let mut sizes: Vec<(f64, f64)> = Vec::new();
+    for round in 0..=more {
+        for bead in &beads[sizes.len()..] {
+            let (width, height) = truth(bead[0], bead[1]);
+            sizes.push((width * (1.0 + noise * random.normal()), height * (1.0 + noise * random.normal())));
+        }
+        let rows =
+            beads.iter().zip(&sizes).map(|(bead, size)| format!("{},{},{},{}\n", bead[0], bead[1], size.0, size.1));
+        let csv =
+            format!("deposition_speed_mm_s,wire_feed_speed_m_min,width_mm,height_mm\n{}", rows.collect::<String>());
+        let library = BeadLibrary::fit(&Measured::read(&csv, &Columns::default()).unwrap()).unwrap();
+        if round == more {
+            return library;
+        }
+        beads.push(library.next_trial(wanted).0);
+    }
+    unreachable!("the last round returns")
+}
+
+/// How many of 200 series with 5 % noise predict the wanted bead within 3 %, by a factorial design, and by trials that tell most
+/// about it; and that these need fewer beads.
+#[test]
+fn trials_that_tell_most_about_the_wanted_bead_need_fewer_beads() {
+    let factors = factors(&["deposition_speed=6..12", "wire_feed_speed=5..8"]);
+    for wanted in [[8.2, 6.3], [7.0, 7.4], [10.5, 5.6]] {
+        let (width, height) = truth(wanted[0], wanted[1]);
+        let share = |learn: &dyn Fn(u64) -> BeadLibrary| {
+            let good = |seed: &u64| {
+                let found = learn(*seed).predict(&wanted);
+                found.is_ok_and(|found| {
+                    (found.width.value / width - 1.0).abs() < 0.03 && (found.height.value / height - 1.0).abs() < 0.03
+                })
+            };
+            (0..200).filter(good).count() as f64 / 200.0
+        };
+        for levels in [3, 4, 5, 6] {
+            let beads = levels * levels;
+            let factorial = share(&|seed| learned(Design::Factorial(levels), &factors, seed, 0, 0.05, None));
+            let more = beads - 8;
+            let design = Design::LatinHypercube(8);
+            let adaptive = share(&|seed| learned(design, &factors, seed, more, 0.05, Some(&wanted)));
+            println!(
+                "{wanted:?}, {beads} beads: within 3 % in {:.0} % of series by factorial, in {:.0} % by adaptive trials",
+                100.0 * factorial,
+                100.0 * adaptive
+            );
+            assert!(levels == 3 || adaptive > factorial - 0.02, "{wanted:?} {beads}: {adaptive} {factorial}");
+            assert!(levels < 6 || adaptive > 0.9, "{wanted:?}: {adaptive}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_laid_is_refused_with_the_remedy() {
+    let say = |text: &str| text.parse::<Factor>().unwrap_err().to_string();
+    assert!(say("deposition_speed").contains("NAME=MIN..MAX"));
+    assert!(say("speed=1..2").contains("deposition_speed, wire_feed_speed"));
+    assert!(say("deposition_speed=9..6").contains("the least first"));
+    assert!(say("wire_feed_speed=5..900").contains("0.1 to 100 m/min"));
+    assert!(say("job=1..4").contains("one by one"));
+    let laid = |factor: &str, length: f64| {
+        let factors = factors(&[factor]);
+        let combinations = points(Design::Factorial(3), &factors, 1).unwrap();
+        let plate = Plate { length: 200.0, width: 100.0, margin: 10.0 };
+        let spacing = Spacing { length, gap: 10.0, wait: 0.0, numbers: true };
+        Series::new((factors, &combinations), (Shape::Bead, 1), (plate, spacing), (&process(), BEAD, 2.0), 1)
+    };
+    assert!(laid("deposition_speed=6..9", 190.0).unwrap_err().to_string().contains("Give a larger one"));
+    assert!(laid("dwell=6..9", 50.0).unwrap_err().to_string().contains("dwell to walls"));
+    assert!(laid("deposition_speed=6..9", 90.0).is_ok());
+    assert!(Shape::Bead.allows(Parameter::Job));
+}
+
+/// A scan of beads of known size on a tilted plate, with noise, at any angle of the beads.
+#[test]
+fn beads_in_a_scan_have_the_size_that_they_were_made_with() {
+    let mut random = Random::new(5);
+    for (noise, most) in [(0.0, 0.01), (0.05, 0.03), (0.1, 0.05)] {
+        for degrees in [0.0_f64, 33.0, 90.0, 200.0] {
+            let turn = DVec2::from_angle(degrees.to_radians());
+            let sizes = [(4.5, 1.6), (6.0, 2.0), (8.5, 3.2), (5.0, 3.0)];
+            let bead = |k: usize| [0.0, 90.0].map(|x| turn.rotate(DVec2::new(x, 30.0 * k as f64)));
+            // The last is not welded.
+            let beads: Vec<[DVec2; 2]> = (0..=sizes.len()).map(bead).collect();
+            let mut scan = Vec::new();
+            for (i, j) in (0..280).flat_map(|i| (0..400).map(move |j| (i, j))) {
+                let flat = DVec2::new(-25.0 + 0.5 * f64::from(i), -40.0 + 0.5 * f64::from(j));
+                let own = |(k, (width, height)): (usize, &(f64, f64))| {
+                    // It wanders by half a millimetre from where it was planned.
+                    let across = flat.y - 30.0 * k as f64 - 0.5;
+                    let on = (0.0..=90.0).contains(&flat.x) && across.abs() < width / 2.0;
+                    if on { height * (1.0 - (2.0 * across / width).powi(2)) } else { 0.0 }
+                };
+                let bead: f64 = sizes.iter().enumerate().map(own).sum();
+                let at = turn.rotate(flat);
+                let z = 12.0 + 0.004 * at.x - 0.003 * at.y + bead + noise * random.normal();
+                scan.push(DVec3::new(at.x, at.y, z));
+            }
+            let found = trial::measured(&scan, &beads, 8.0).unwrap();
+            for (size, (width, height)) in found.iter().zip(sizes) {
+                let size = size.unwrap();
+                assert!((size.width / width - 1.0).abs() < most, "{noise} {degrees}: {size:?} {width}");
+                assert!((size.height / height - 1.0).abs() < most, "{noise} {degrees}: {size:?} {height}");
+            }
+            assert_eq!(found.last().unwrap(), &None, "{noise} {degrees}");
+        }
+    }
+    assert!(trial::measured(&[], &[[DVec2::ZERO, DVec2::X]], 5.0).is_err());
+}
+
+#[test]
+fn a_scan_fills_in_the_lines_of_its_plate_only() {
+    let series = series(&["deposition_speed=6..10"], Shape::Bead, 2, 1);
+    let sheet = trial::csv("trials", series.shape, &series.factors, &series.trials, 90.0);
+    let size = BeadSize { width: 6.123, height: 2.0, width_varies: 0.1, height_varies: 0.1 };
+    let filled = trial::filled(&sheet, 2, &[Some(size), None, Some(size)]).unwrap();
+    let changed: Vec<usize> =
+        sheet.lines().zip(filled.lines()).enumerate().filter(|(_, (a, b))| a != b).map(|(k, _)| k).collect();
+    assert_eq!(changed, [6, 8], "{filled}");
+    assert!(filled.contains(",6.12,2.00,"));
+    // As a spreadsheet of a country with decimal commas saves it, with remarks that contain separators.
+    let european = sheet.replace(',', ";").replace(";;\n", ";;\"cold; wet\"\n");
+    let filled = trial::filled(&european, 1, &[Some(size); 3]).unwrap();
+    assert!(filled.contains(";6,12;2,00;") && filled.contains("\"cold; wet\""), "{filled}");
+    assert_eq!(Measured::read(&filled, &Columns::default()).unwrap().widths, [6.12; 3]);
+    let error = trial::filled(&sheet, 1, &[None]).unwrap_err();
+    assert!(error.to_string().contains("do not belong together"));
+    assert!(trial::filled("a,b\n1,2\n", 1, &[]).unwrap_err().to_string().contains("plate"));
+}
