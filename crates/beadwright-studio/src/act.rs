@@ -95,6 +95,11 @@ impl Studio {
                 self.window.settings.language = language;
                 self.window.store.keep_settings(&self.window.settings);
             }
+            Action::TextSize(percent) => {
+                self.window.settings.text_percent = percent;
+                self.apply_text_size();
+                self.window.store.keep_settings(&self.window.settings);
+            }
             Action::AllParameters(all) => {
                 self.window.settings.all_parameters = all;
                 self.window.store.keep_settings(&self.window.settings);

@@ -75,6 +75,8 @@ pub enum Action {
     ResetValue(String),
     /// Removes several values from the profile.
     ResetValues(Vec<String>),
+    /// Sets the size of the text, % of the usual.
+    TextSize(u32),
     /// Lists all parameters, or only the basic ones.
     AllParameters(bool),
     /// Loads the text of another profile.

@@ -3,6 +3,7 @@
 use crate::actions::{self, Action};
 use crate::jobs::Ask;
 use crate::known::{Known, Queue, View};
+use crate::settings::{TEXT_PERCENT, text_percent};
 use crate::text::Language;
 use crate::theme;
 use crate::view::{Mode, Side};
@@ -36,13 +37,14 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
             items(known, queue, ui, &[Action::Up, Action::Down, Action::Play]);
             ui.separator();
             items(known, queue, ui, &[Action::Theme]);
+            ui.menu_button(known.t("text-size"), |ui| text_sizes(queue, ui));
             ui.menu_button(known.t("language"), |ui| languages(known, queue, ui));
         });
         ui.menu_button(known.t("examples"), |ui| examples(queue, ui));
         ui.menu_button(known.t("help"), |ui| items(known, queue, ui, &[Action::Keys]));
     });
     if known.project().source.is_some() {
-        ui.horizontal(|ui| bar(known, view, queue, ui));
+        ui.horizontal_wrapped(|ui| bar(known, view, queue, ui));
     }
 }
 
@@ -104,6 +106,16 @@ fn languages(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
         let button = ui.add_enabled(possible, Button::selectable(known.language() == language, name));
         if button.on_disabled_hover_text(known.t("no-chinese")).clicked() {
             queue.push(Action::Speak(language));
+            ui.close();
+        }
+    }
+}
+
+fn text_sizes(queue: &mut Queue, ui: &mut Ui) {
+    let now = text_percent(ui.ctx());
+    for percent in TEXT_PERCENT {
+        if ui.selectable_label(now == percent, format!("{percent} %")).clicked() {
+            queue.push(Action::TextSize(percent));
             ui.close();
         }
     }

@@ -180,7 +180,8 @@ fn widget(
         Kind::Choice(words) => choice(ui, &field.key, words, value),
         Kind::Text => {
             let mut text = value.and_then(toml::Value::as_str).unwrap_or_default().to_owned();
-            let response = ui.add(TextEdit::singleline(&mut text).desired_width(180.0));
+            let width = room(ui).min(180.0);
+            let response = ui.add(TextEdit::singleline(&mut text).desired_width(width));
             let changed = response.changed().then(|| quoted(&text));
             (response, changed)
         }
@@ -241,12 +242,19 @@ fn choice(
     (combo.response, chosen)
 }
 
+/// Width for a text field in its row, which ends with the button that removes its value.
+fn room(ui: &Ui) -> f32 {
+    const LEAST: f32 = 80.0;
+    (ui.available_width() - ui.spacing().interact_size.x).max(LEAST)
+}
+
 fn lines(ui: &mut Ui, value: Option<&toml::Value>) -> (Response, Option<String>) {
     let now: Vec<&str> =
         value.and_then(toml::Value::as_array).into_iter().flatten().filter_map(|v| v.as_str()).collect();
     let mut text = now.join("\n");
     let rows = now.len().max(1);
-    let edit = TextEdit::multiline(&mut text).code_editor().desired_rows(rows).desired_width(f32::INFINITY);
+    let width = room(ui);
+    let edit = TextEdit::multiline(&mut text).code_editor().desired_rows(rows).desired_width(width);
     let response = ui.add(edit);
     let changed = response.changed().then(|| {
         let quoted: Vec<String> = text.lines().map(quoted).collect();

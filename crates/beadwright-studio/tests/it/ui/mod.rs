@@ -11,6 +11,7 @@ mod flat;
 mod holding;
 mod keyboard;
 mod linked;
+mod panels;
 mod pictures;
 mod place;
 mod placement;
