@@ -302,8 +302,8 @@ pub fn grouped(findings: &[Finding]) -> Vec<Finding> {
     CHECKS.iter().filter_map(of).collect()
 }
 
-/// Everything to report about a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]),
-/// its warnings, what was mended in the model (sentences), and its notes. Nothing is said twice; remedies are worded
+/// Everything to report about a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`] or
+/// one by one), its warnings, what was mended in the model (sentences), and its notes. Nothing is said twice; remedies are worded
 /// for the program in use (`words`).
 pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> Vec<Finding> {
     let warned: Vec<Finding> = summary.warnings.summaries().map(Finding::from).collect();
