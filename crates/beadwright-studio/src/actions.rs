@@ -111,6 +111,10 @@ pub enum Action {
     BringBack,
     /// Discards that project.
     LetGo,
+    /// Exports the program despite its serious findings, or does not.
+    DecideExport(bool),
+    /// Uses what a damaged model holds.
+    AcceptDamaged,
     /// Closes the window, whatever was changed.
     Leave,
     /// Keeps the window open after all.

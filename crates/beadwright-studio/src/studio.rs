@@ -228,7 +228,7 @@ impl Studio {
     /// Plans the project again, the layer in view first.
     pub fn replan(&mut self) {
         self.view.playing = false;
-        self.view.chosen = None;
+        (self.view.chosen, self.view.pin) = (None, None);
         // Pending answers are about the previous plan.
         (self.jobs.reach, self.jobs.reach_job) = (None, None);
         self.jobs.looked.forget();

@@ -85,7 +85,7 @@ fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
         [(Side::Totals, "totals"), (Side::Findings, "findings"), (Side::Plots, "plots"), (Side::Export, "export")];
     ui.horizontal_wrapped(|ui| {
         for (side, key) in tabs {
-            let count = known.plans.own.findings.as_ref().filter(|_| side == Side::Findings).map_or(0, Vec::len);
+            let count = if side == Side::Findings { known.plans.own.found() } else { 0 };
             let text = if count > 0 { format!("{} ({count})", known.t(key)) } else { known.t(key).to_owned() };
             let widest = if side == Side::Findings { format!("{} (999)", known.t(key)) } else { text.clone() };
             let button = Button::selectable(view.state.side == side, text).min_size(room(ui, widest));

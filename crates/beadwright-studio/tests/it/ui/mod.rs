@@ -8,6 +8,7 @@ mod export;
 mod faults;
 mod files;
 mod flat;
+mod found;
 mod holding;
 mod keyboard;
 mod linked;
