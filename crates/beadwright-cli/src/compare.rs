@@ -69,8 +69,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         notes.extend(loaded.notes.into_iter().map(|note| format!("{}: {note}", loaded.name)));
     }
     bar.finish_and_clear();
+    compare::rank(&mut entries);
     let part = arguments.model.part();
-    let lead = format!("Profile {}, beads of {} mm; {}", profile.name, profile.bead.width, compare::SCORE);
+    let (name, width) = (&profile.name, profile.bead.width);
+    let lead = format!("Profile {name}, beads of {width} mm; {} {}", compare::SCORE, compare::GATE);
     let mut page = compare::page(&part, &lead, &entries);
     let middle = entries.first().and_then(|e| e.layers.get(e.layers.len() / 2));
     for (name, layer) in names.iter().flat_map(|&name| middle.map(|layer| (name, layer))) {
@@ -105,5 +107,6 @@ fn print(out: &mut impl Write, entries: &[Entry]) -> std::io::Result<()> {
         }
         writeln!(out)?;
     }
-    writeln!(out, "{:widest$} * best; {}", "", compare::SCORE)
+    writeln!(out, "{:widest$} * best; {}", "", compare::SCORE)?;
+    writeln!(out, "{:widest$} {}", "", compare::GATE)
 }

@@ -7,7 +7,7 @@ use crate::jobs::{self, Ask};
 use crate::level;
 use crate::studio::Studio;
 use crate::thumbnail::{self, thumbnail};
-use crate::view::Mode;
+use crate::view::{Mode, Side};
 use crate::view3d::StandardView;
 use beadwright::example;
 use beadwright::robot::Cell;
@@ -25,8 +25,8 @@ impl Studio {
             },
             Action::SaveAs => self.ask(Ask::SaveProject),
             Action::ExportProgram => {
-                self.jobs.exporting = Export::Program(self.view.dialect.clone());
-                self.ask(Ask::Folder);
+                let program = Export::Program(self.view.dialect.clone());
+                self.begin_export(program);
             }
             Action::Undo => {
                 let undone = self.open.project.undo();
@@ -45,6 +45,7 @@ impl Studio {
                     other.plan.progress = None;
                 }
                 self.view.playing = false;
+                self.view.pin = None;
             }
             Action::Solid => self.view.switch(Mode::Solid),
             Action::Layer => self.view.switch(Mode::Layer),
@@ -81,18 +82,23 @@ impl Studio {
                     self.answered(what, &path);
                 }
             }
-            Action::Export(what) => {
-                let folder = self.view.folder.trim().to_owned();
-                self.jobs.exporting = what;
-                match folder.as_str() {
-                    "" => self.ask(Ask::Folder),
-                    folder => self.answered(Ask::Folder, Path::new(folder)),
+            Action::Export(what) => self.begin_export(what),
+            Action::DecideExport(goes_on) => {
+                self.jobs.doubted = false;
+                if goes_on {
+                    self.choose_folder();
                 }
             }
+            Action::AcceptDamaged => self.change("damaged", |project| project.accept_damaged = true),
             Action::OpenFile(path) => self.open(&path),
             Action::OpenExample(name) => self.open_example(name),
             Action::Speak(language) => {
                 self.window.settings.language = language;
+                self.window.store.keep_settings(&self.window.settings);
+            }
+            Action::TextSize(percent) => {
+                self.window.settings.text_percent = percent;
+                self.apply_text_size();
                 self.window.store.keep_settings(&self.window.settings);
             }
             Action::AllParameters(all) => {
@@ -133,6 +139,30 @@ impl Studio {
             }
             Action::Leave => self.close(),
             Action::GoOn => self.window.closing = false,
+        }
+    }
+
+    /// Exports, unless a program should not be started; about one with serious findings the user is asked.
+    fn begin_export(&mut self, what: Export) {
+        let (program, own) = (what.has_program(), &self.plans.own);
+        if let Some(reason) = own.forbidden().first().filter(|_| program).cloned() {
+            self.view.side = Side::Findings;
+            self.complain(format!("{} {reason} {}", self.t("export-refused"), self.t("export-refused-help")));
+            return;
+        }
+        self.jobs.doubted = program && own.serious().next().is_some();
+        self.jobs.exporting = what;
+        if !self.jobs.doubted {
+            self.choose_folder();
+        }
+    }
+
+    /// Writes into the folder that is given, or asks for one.
+    fn choose_folder(&mut self) {
+        let folder = self.view.folder.trim().to_owned();
+        match folder.as_str() {
+            "" => self.ask(Ask::Folder),
+            folder => self.answered(Ask::Folder, Path::new(folder)),
         }
     }
 

@@ -75,6 +75,8 @@ pub enum Action {
     ResetValue(String),
     /// Removes several values from the profile.
     ResetValues(Vec<String>),
+    /// Sets the size of the text, % of the usual.
+    TextSize(u32),
     /// Lists all parameters, or only the basic ones.
     AllParameters(bool),
     /// Loads the text of another profile.
@@ -109,6 +111,10 @@ pub enum Action {
     BringBack,
     /// Discards that project.
     LetGo,
+    /// Exports the program despite its serious findings, or does not.
+    DecideExport(bool),
+    /// Uses what a damaged model holds.
+    AcceptDamaged,
     /// Closes the window, whatever was changed.
     Leave,
     /// Keeps the window open after all.

@@ -4,6 +4,7 @@ use crate::actions;
 use crate::jobs::{self, Answer};
 use crate::known::Queue;
 use crate::panels;
+use crate::settings::text_percent;
 use crate::studio::Studio;
 use crate::view3d::Colour;
 use eframe::egui::{self, ViewportCommand};
@@ -119,6 +120,7 @@ impl eframe::App for Studio {
     }
 
     fn on_exit(&mut self) {
+        self.window.settings.text_percent = text_percent(&self.window.ctx);
         self.window.store.keep_settings(&self.window.settings);
         // If the user has not decided about the lost project, ask again at the next start.
         match &self.open.lost {

@@ -25,6 +25,11 @@ impl Default for Export {
 }
 
 impl Export {
+    /// Whether programs are among the files.
+    pub fn has_program(&self) -> bool {
+        !matches!(self, Self::File(_))
+    }
+
     /// The texts, in pieces.
     ///
     /// # Errors
@@ -54,10 +59,7 @@ impl Export {
 /// Refuses programs that should not be started.
 fn allowed(summary: &Summary) -> Result<(), String> {
     match summary.forbidden.first() {
-        Some(reason) => Err(format!(
-            "Nothing was written, since the program should not be started. {reason} `beadwright plan --allow-findings` writes it \
-             anyway."
-        )),
+        Some(reason) => Err(format!("Nothing was written, since the program should not be started. {reason}")),
         None => Ok(()),
     }
 }

@@ -91,6 +91,8 @@ pub(crate) struct Jobs {
     pub(crate) typed: Option<Ask>,
     /// What to write into the folder that is being asked for.
     pub(crate) exporting: Export,
+    /// Whether the user is being asked about its serious findings first.
+    pub(crate) doubted: bool,
     /// The steps of the strategy in the layer in view.
     pub(crate) looked: Looked,
     pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,

@@ -62,8 +62,11 @@ pub enum Event {
 /// Why there is no plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Failure {
-    /// The unit of the model must be given: a sentence that says why.
-    Units(String),
+    /// The unit of the model must be given: a sentence that says why, and the size by each unit of
+    /// [`Units::ALL`](beadwright::model::Units::ALL), mm.
+    Units(String, [String; 4]),
+    /// The model is damaged, but part of it can be used: a sentence that says what is wrong.
+    Damaged(String),
     /// The height of a wall must be given.
     Height(String),
     /// Anything else, as a sentence.

@@ -42,6 +42,8 @@ pub struct Project {
     pub source: Option<Source>,
     /// How the model is placed.
     pub placement: Placement,
+    /// Whether what a damaged model holds is used.
+    pub accept_damaged: bool,
     /// Whether the preform of the model is planned: the part plus the stock that is milled off afterwards.
     pub preform: bool,
     /// Height of a wall given by curves at a single height, mm.
@@ -53,7 +55,8 @@ pub struct Project {
 impl Default for Project {
     fn default() -> Self {
         let profile = Profile::built_in_text(FIRST_PROFILE).unwrap_or_default().to_owned();
-        Self { source: None, placement: Placement::default(), preform: false, height: None, profile }
+        let placement = Placement::default();
+        Self { source: None, placement, accept_damaged: false, preform: false, height: None, profile }
     }
 }
 
@@ -88,6 +91,8 @@ struct File {
     #[serde(skip_serializing_if = "Option::is_none")]
     height: Option<f64>,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    accept_damaged: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     preform: bool,
     profile: String,
     #[serde(default)]
@@ -107,8 +112,9 @@ impl Project {
             Some(Source::Example(name)) => (None, Some(name.clone())),
             None => (None, None),
         };
-        let (height, preform, profile, placement) = (self.height, self.preform, self.profile.clone(), self.placement);
-        toml::to_string_pretty(&File { version: VERSION, model, example, height, preform, profile, placement })
+        let Self { placement, accept_damaged, preform, height, profile, .. } = self.clone();
+        let version = VERSION;
+        toml::to_string_pretty(&File { version, model, example, height, accept_damaged, preform, profile, placement })
             .map_err(|error| format!("the project cannot be written: {error}"))
     }
 
@@ -132,8 +138,8 @@ impl Project {
             (None, Some(name)) => Some(Source::Example(name)),
             (None, None) => None,
         };
-        let File { placement, preform, height, profile, .. } = file;
-        Ok(Self { source, placement, preform, height, profile })
+        let File { placement, accept_damaged, preform, height, profile, .. } = file;
+        Ok(Self { source, placement, accept_damaged, preform, height, profile })
     }
 
     /// The name of the part.

@@ -3,7 +3,9 @@
 use crate::planner::{Event, Failure};
 use crate::view3d::{Scanned, Scene};
 use beadwright::Finding;
+use beadwright::check;
 use beadwright::deposit::{Figures, Judgement};
+use beadwright::finding::Severity;
 use beadwright::layer::Layer;
 use beadwright::model::{Mesh, Part};
 use beadwright::plan::{Header, Summary};
@@ -32,6 +34,8 @@ pub struct PlanState {
     pub summary: Option<Summary>,
     /// What the checks found, at the very end.
     pub findings: Option<Vec<Finding>>,
+    /// Everything to report so far, the worst first: those of a check as one.
+    pub reported: Vec<Finding>,
     /// The stage in progress.
     pub progress: Option<(Stage, f64)>,
     /// Why there is no plan.
@@ -58,6 +62,34 @@ impl PlanState {
         self.failure = None;
         self.findings = None;
         self.received = Received::Nothing;
+        self.report();
+    }
+
+    /// Puts together what there is to report.
+    fn report(&mut self) {
+        let repaired = self.part.as_ref().map(|part| part.repair().sentences()).unwrap_or_default();
+        let found = self.findings.as_deref().map(check::grouped).unwrap_or_default();
+        self.reported = match &self.summary {
+            Some(summary) => check::all_findings(summary, &repaired, &found),
+            None => repaired.into_iter().map(|text| Finding::new("model", Severity::Note, text)).collect(),
+        };
+    }
+
+    /// Number of findings that are more than notes, metal that is missing included.
+    pub fn found(&self) -> usize {
+        self.reported.iter().filter(|f| f.severity < Severity::Note).map(|f| f.count).sum()
+    }
+
+    /// What is serious about the last request, as far as it is known.
+    pub fn serious(&self) -> impl Iterator<Item = &Finding> {
+        let known = self.is_of_last_request();
+        self.reported.iter().filter(move |finding| known && finding.severity == Severity::Serious)
+    }
+
+    /// Why the programs of the last request should not be written.
+    pub fn forbidden(&self) -> &[String] {
+        let summary = self.summary.as_ref().filter(|_| self.is_of_last_request());
+        summary.map_or(&[], |summary| &summary.forbidden)
     }
 
     /// Whether layers, profile and totals in view belong together and to the last request: only then may they be
@@ -68,6 +100,14 @@ impl PlanState {
 
     /// Takes in an event.
     pub fn take(&mut self, event: Event) {
+        let tells = !matches!(event, Event::Progress(..) | Event::Layer(..) | Event::Judged(..));
+        self.hold(event);
+        if tells {
+            self.report();
+        }
+    }
+
+    fn hold(&mut self, event: Event) {
         match event {
             Event::Progress(stage, fraction) => self.progress = Some((stage, fraction)),
             Event::Part(part, mesh, profile) => {

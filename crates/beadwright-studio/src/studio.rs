@@ -73,6 +73,7 @@ impl Studio {
             their_flat: View2d::default(),
         };
         studio.apply_theme();
+        studio.apply_text_size();
         studio
     }
 
@@ -227,7 +228,7 @@ impl Studio {
     /// Plans the project again, the layer in view first.
     pub fn replan(&mut self) {
         self.view.playing = false;
-        self.view.chosen = None;
+        (self.view.chosen, self.view.pin) = (None, None);
         // Pending answers are about the previous plan.
         (self.jobs.reach, self.jobs.reach_job) = (None, None);
         self.jobs.looked.forget();
@@ -267,6 +268,12 @@ impl Studio {
             other.planner.plan(&with_strategy(self.project().clone(), strategy), self.view.last);
         }
         self.plans.other = Some(other);
+    }
+
+    pub(crate) fn apply_text_size(&self) {
+        // What stands in the file may be anything; keys stay within these.
+        let percent = self.window.settings.text_percent.clamp(50, 400);
+        self.window.ctx.set_zoom_factor(percent as f32 / 100.0);
     }
 
     pub(crate) fn apply_theme(&self) {

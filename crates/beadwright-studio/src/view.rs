@@ -2,6 +2,7 @@
 
 use crate::view2d::Show;
 use crate::view3d::{Colour, Grip, Scene, Section, Stance};
+use glam::{DVec2, DVec3};
 
 /// Which view fills the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,6 +28,19 @@ pub enum Side {
     Plots,
     /// What can be exported.
     Export,
+}
+
+/// The marked place of a finding.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pin {
+    /// Its layer, from 0.
+    pub layer: usize,
+    /// Where on its layer, mm; unrolled where the layer is not level.
+    pub on_layer: DVec2,
+    /// Where in space, mm.
+    pub at: DVec3,
+    /// The finding's text.
+    pub text: String,
 }
 
 /// The state of the views.
@@ -78,6 +92,8 @@ pub struct ViewState {
     pub section: Option<Section>,
     /// What else is shown.
     pub show: Show,
+    /// The finding whose place is marked.
+    pub pin: Option<Pin>,
     /// The chosen bead: layer, pass, piece.
     pub chosen: Option<(usize, usize, usize)>,
     /// The dialect to write.
@@ -126,6 +142,7 @@ impl Default for ViewState {
             compare_solid: false,
             section: None,
             show: Show::default(),
+            pin: None,
             chosen: None,
             dialect: "krl".to_owned(),
             folder: String::new(),
@@ -147,7 +164,7 @@ impl ViewState {
         let (laying, placing, grip) = (false, false, None);
         let (wanted, left, chosen, torch, section) = (None, None, None, None, None);
         let shown = Self { wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
-        *self = Self { laying, placing, grip, ..shown };
+        *self = Self { laying, placing, grip, pin: None, ..shown };
     }
 
     /// Keeps the range within the existing layers.

@@ -90,7 +90,10 @@ impl Page {
     /// The state of things, and the last message.
     fn sentence(&self) -> String {
         let (plan, part) = (self.studio.plan(), self.studio.project().part());
-        if let Some(Failure::Units(text) | Failure::Height(text) | Failure::Sentence(text)) = &plan.failure {
+        if let Some(
+            Failure::Units(text, _) | Failure::Damaged(text) | Failure::Height(text) | Failure::Sentence(text),
+        ) = &plan.failure
+        {
             return text.clone();
         }
         let state = match (&plan.progress, &plan.findings) {

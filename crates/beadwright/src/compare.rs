@@ -274,7 +274,20 @@ pub const COLUMNS: [Column; 14] = [
 pub const SCORE: &str = "score: 10 for each % of void and of metal outside, 1 for each % of overfill, \
                          10 for each arc start per metre of bead; the lowest score is best.";
 
+/// What becomes of those that leave the part empty, in words.
+pub const GATE: &str = "What leaves more than 5 % of the area void, or 25 % low, comes last and is never best.";
+
+/// The most that may stay void and low, % of the area ([`GATE`] names both): with less metal than that, short times and
+/// few starts are no merits.
+const MOST_VOID: f64 = 5.0;
+const MOST_LOW: f64 = 25.0;
+
 impl Entry {
+    /// Whether the part is filled well enough for all other figures to count.
+    pub fn fills(&self) -> bool {
+        self.figures.void_percent() <= MOST_VOID && self.figures.low_percent() <= MOST_LOW
+    }
+
     /// One figure for the quality of the deposit and the number of arc starts; the lower, the better ([`SCORE`]).
     pub fn score(&self) -> f64 {
         let starts_a_metre = 1e3 * self.totals.arc_starts as f64 / self.totals.deposited_length_mm.max(1.0);
@@ -283,17 +296,23 @@ impl Entry {
     }
 }
 
+/// Sorts by score, the best first; those that leave the part empty come last.
+pub fn rank(entries: &mut [Entry]) {
+    entries.sort_by(|a, b| b.fills().cmp(&a.fills()).then(a.score().total_cmp(&b.score())));
+}
+
 /// The cells of the table as text, and whether each is the best of its column.
 pub fn table(entries: &[Entry]) -> Vec<Vec<(String, bool)>> {
     let text = |entry: &Entry, column: &Column| format!("{:.*}", column.decimals, (column.value)(entry));
     let best = |column: &Column| {
         let sign = if column.more { -1.0 } else { 1.0 };
-        let best = entries.iter().min_by(|a, b| (sign * (column.value)(a)).total_cmp(&(sign * (column.value)(b))));
+        let filling = entries.iter().filter(|entry| entry.fills());
+        let best = filling.min_by(|a, b| (sign * (column.value)(a)).total_cmp(&(sign * (column.value)(b))));
         best.map(|entry| text(entry, column))
     };
     let cell = |entry: &Entry, column: &Column| {
         let text = text(entry, column);
-        let is_best = entries.len() > 1 && best(column).as_ref() == Some(&text);
+        let is_best = entries.len() > 1 && entry.fills() && best(column).as_ref() == Some(&text);
         (text, is_best)
     };
     entries.iter().map(|entry| COLUMNS.iter().map(|column| cell(entry, column)).collect()).collect()
@@ -303,7 +322,8 @@ pub fn table(entries: &[Entry]) -> Vec<Vec<(String, bool)>> {
 pub fn tabulate(page: &mut Sheet, entries: &[Entry]) {
     let head: Vec<&str> = ["name", "layers judged"].into_iter().chain(COLUMNS.iter().map(|c| c.name)).collect();
     let row = |(entry, cells): (&Entry, Vec<(String, bool)>)| {
-        let first = [entry.name.clone(), entry.layers.len().to_string()].map(|text| (text, false));
+        let name = if entry.fills() { entry.name.clone() } else { format!("{} (not filled)", entry.name) };
+        let first = [name, entry.layers.len().to_string()].map(|text| (text, false));
         first.into_iter().chain(cells).collect()
     };
     let rows: Vec<_> = entries.iter().zip(table(entries)).map(row).collect();

@@ -38,8 +38,8 @@ impl Severity {
 /// Something that is wrong, doubtful or worth knowing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
-    /// What kind of finding: the name of a check or a warning, or `reach`, `model` (what was repaired), `plan` (a note)
-    /// or `refused`.
+    /// What kind of finding: the name of a check or a warning, or `reach`, `model` (what was repaired), `plan` (a note),
+    /// `lost-geometry` or `refused`.
     pub kind: &'static str,
     /// How much it matters.
     pub severity: Severity,

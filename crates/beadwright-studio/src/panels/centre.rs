@@ -68,6 +68,7 @@ pub(super) fn flat(
         nothing: words.nothing,
         chosen: state.chosen.filter(|(of, ..)| *of == state.last).map(|(_, pass, piece)| (pass, piece)),
     };
+    view.pin = state.pin.as_ref().filter(|pin| pin.layer == state.last).map(|pin| pin.on_layer);
     view.show(ui, subject, state.show, words.label).picked
 }
 

@@ -33,6 +33,12 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     if !judged {
         ui.weak(known.t("not-complete"));
     }
+    let reasons = known.plans.own.forbidden();
+    if !reasons.is_empty() {
+        ui.colored_label(ui.visuals().error_fg_color, known.t("may-not-be-written"));
+        reasons.iter().for_each(|reason| drop(ui.label(reason)));
+        ui.weak(known.t("export-refused-help"));
+    }
     let rows = [
         ("export-program", Export::Program(view.state.dialect.clone()), planned),
         ("export-plan", Export::File(PLAN), judged),

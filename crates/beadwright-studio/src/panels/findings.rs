@@ -2,31 +2,30 @@
 
 use super::words;
 use crate::known::{Known, View};
-use crate::view::Mode;
+use crate::view::{Mode, Pin};
 use beadwright::Finding;
 use beadwright::check::{self, Check};
-use beadwright::finding::Severity;
+use beadwright::finding::{Severity, lacks_metal_below};
 use eframe::egui::{CollapsingHeader, Color32, Response, RichText, Ui};
 
 /// Checks about what the deposit model computes.
 const FIGURES: [&str; 4] = ["void", "overfill", "outside", "towers"];
 
+/// The height of the picture of a place, bead widths; twice as much in 3-D.
+const ROOM: f64 = 12.0;
+
 /// Maximum number of findings listed for one check.
 const LISTED: usize = 100;
 
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
-    let Some(findings) = known.plans.own.findings.clone() else {
-        ui.weak(known.t("findings-wait"));
-        return;
-    };
     let own = &known.plans.own;
-    let repaired = own.part.as_ref().map(|part| part.repair().sentences()).unwrap_or_default();
-    let grouped = check::grouped(&findings);
-    let all = own.summary.as_ref().map_or(grouped.clone(), |summary| check::all_findings(summary, &repaired, &grouped));
-    if all.is_empty() {
-        ui.label(known.t("no-findings"));
+    match &own.findings {
+        None => drop(ui.weak(known.t("findings-wait"))),
+        Some(_) if own.reported.is_empty() => drop(ui.label(known.t("no-findings"))),
+        Some(_) => {}
     }
-    for finding in &all {
+    let findings = own.findings.as_deref().unwrap_or_default();
+    for finding in &own.reported {
         let visuals = ui.visuals();
         let colour = match finding.severity {
             Severity::Serious => visuals.error_fg_color,
@@ -34,9 +33,10 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
             Severity::Note => visuals.weak_text_color(),
         };
         match check::by_name(finding.kind) {
-            Some(check) => checked(known, view, ui, check, &findings, colour),
+            Some(check) => checked(known, view, ui, check, findings, colour),
             None => {
-                let title = format!("{} ({})", finding.kind, known.t(word(finding.severity)));
+                let count = if finding.count > 1 { format!("{}, ", finding.count) } else { String::new() };
+                let title = format!("{} ({count}{})", finding.kind, known.t(word(finding.severity)));
                 ui.colored_label(colour, title);
                 one(known, view, ui, finding);
             }
@@ -92,9 +92,11 @@ fn one(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, finding: &Finding) {
         explained(known, ui.label(&text), finding.kind, &text);
         return;
     }
-    let link = ui.link(&text).on_hover_text(known.t("go-there"));
+    let pinned = view.state.pin.as_ref().is_some_and(|pin| pin.text == finding.text);
+    let words = if pinned { RichText::new(&text).strong() } else { RichText::new(&text) };
+    let link = ui.link(words).on_hover_text(known.t("go-there"));
     if explained(known, link, finding.kind, &text).clicked() {
-        go_to(view, finding);
+        go_to(known, view, finding);
     }
 }
 
@@ -125,16 +127,38 @@ fn sentence(finding: &Finding) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// Shows the place of a finding: its layer, with the bead chosen.
-fn go_to(view: &mut View<'_>, finding: &Finding) {
+/// Shows the place of a finding, framed, with its bead chosen, and marks it until another one is shown.
+fn go_to(known: Known<'_>, view: &mut View<'_>, finding: &Finding) {
     let Some(layer) = finding.layer else { return };
     view.state.look_at(layer);
-    view.state.mode = Mode::Layer;
     view.state.chosen = finding.pass.map(|pass| (layer, pass, 0));
+    view.state.pin = pin(known, finding, layer);
+    let deep = view.state.pin.is_some() && known.window.render_state.is_some() && is_between_layers(finding.kind);
+    view.state.mode = if deep { Mode::Solid } else { Mode::Layer };
     if FIGURES.contains(&finding.kind) {
         view.state.show.heights = true;
     }
-    if let Some(place) = finding.place {
-        view.flat.look_at(place.truncate());
+    let bead = known.plans.own.profile.as_ref().map_or(1.0, |profile| profile.bead.width);
+    match &view.state.pin {
+        Some(pin) => {
+            view.flat.frame(pin.on_layer, ROOM * bead);
+            view.solid.frame(pin.at, 2.0 * ROOM * bead);
+        }
+        None => view.flat.fit(),
     }
+}
+
+/// Whether what is wrong is seen from the side rather than on a layer.
+fn is_between_layers(kind: &str) -> bool {
+    lacks_metal_below(kind) || ["towers", "built-height"].contains(&kind)
+}
+
+/// Where a finding is: its own place, or the start of its pass.
+fn pin(known: Known<'_>, finding: &Finding, layer: usize) -> Option<Pin> {
+    let plan = &known.plans.own;
+    let own = plan.layer(layer)?;
+    let place = finding.place.or_else(|| own.passes.get(finding.pass?)?.start())?;
+    let sheet = plan.profile.as_ref().and_then(|profile| profile.layers.sheet(own));
+    let at = sheet.map_or(place, |sheet| sheet.at(place).place);
+    Some(Pin { layer, on_layer: place.truncate(), at, text: finding.text.clone() })
 }

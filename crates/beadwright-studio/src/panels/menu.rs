@@ -3,13 +3,14 @@
 use crate::actions::{self, Action};
 use crate::jobs::Ask;
 use crate::known::{Known, Queue, View};
+use crate::settings::{TEXT_PERCENT, text_percent};
 use crate::text::Language;
 use crate::theme;
 use crate::view::{Mode, Side};
 use beadwright::example;
 use beadwright::fill::StrategyName;
 use beadwright::task::Stage;
-use eframe::egui::{Button, ComboBox, MenuBar, ProgressBar, Ui};
+use eframe::egui::{Button, ComboBox, MenuBar, ProgressBar, RichText, Ui};
 
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     MenuBar::new().ui(ui, |ui| {
@@ -36,13 +37,14 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
             items(known, queue, ui, &[Action::Up, Action::Down, Action::Play]);
             ui.separator();
             items(known, queue, ui, &[Action::Theme]);
+            ui.menu_button(known.t("text-size"), |ui| text_sizes(queue, ui));
             ui.menu_button(known.t("language"), |ui| languages(known, queue, ui));
         });
         ui.menu_button(known.t("examples"), |ui| examples(queue, ui));
         ui.menu_button(known.t("help"), |ui| items(known, queue, ui, &[Action::Keys]));
     });
     if known.project().source.is_some() {
-        ui.horizontal(|ui| bar(known, view, queue, ui));
+        ui.horizontal_wrapped(|ui| bar(known, view, queue, ui));
     }
 }
 
@@ -109,6 +111,16 @@ fn languages(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
     }
 }
 
+fn text_sizes(queue: &mut Queue, ui: &mut Ui) {
+    let now = text_percent(ui.ctx());
+    for percent in TEXT_PERCENT {
+        if ui.selectable_label(now == percent, format!("{percent} %")).clicked() {
+            queue.push(Action::TextSize(percent));
+            ui.close();
+        }
+    }
+}
+
 fn bar(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     let now = known.parsed().map(|parsed| parsed.profile.fill.strategy);
     let label = ui.label(known.t("strategy"));
@@ -137,7 +149,7 @@ fn bar(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
                 queue.push(Action::Stop);
             }
         }
-        None if known.plans.own.is_complete() => done(known, view, ui),
+        None if known.plans.own.is_complete() => done(known, ui),
         None if known.plans.own.failure.is_none() && known.plans.own.part.is_some() => {
             ui.label(known.t("stopped"));
             if ui.button(known.t("plan")).clicked() {
@@ -146,15 +158,33 @@ fn bar(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
         }
         None => {}
     }
+    verdict(known, view, ui);
 }
 
-/// Shows that the plan is complete and how much the checks found; a click opens the findings.
-fn done(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
-    let count = known.plans.own.findings.as_ref().map_or(0, Vec::len);
-    let good = theme::good(ui.visuals().dark_mode);
-    let warn = ui.visuals().warn_fg_color;
-    ui.colored_label(if count > 0 { warn } else { good }, known.t("ready"));
-    if count > 0 && ui.link(format!("{}: {count}", known.t("findings"))).clicked() {
+/// Shows that the plan is complete, and how good it is by its colour.
+fn done(known: Known<'_>, ui: &mut Ui) {
+    let (own, visuals) = (&known.plans.own, ui.visuals());
+    let colour = match own.found() {
+        _ if own.serious().next().is_some() => visuals.error_fg_color,
+        0 => theme::good(visuals.dark_mode),
+        _ => visuals.warn_fg_color,
+    };
+    ui.colored_label(colour, known.t("ready"));
+}
+
+/// Says, as soon as it is known, that a program may not be written, and how much was found; a click opens the findings.
+fn verdict(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
+    let own = &known.plans.own;
+    let error = ui.visuals().error_fg_color;
+    let (serious, found) = (own.serious().map(|finding| finding.count).sum::<usize>(), own.found());
+    if !own.forbidden().is_empty() {
+        let text = RichText::new(known.t("may-not-be-written")).color(error).strong();
+        ui.label(text).on_hover_text(own.forbidden().join("\n\n"));
+    } else if serious > 0 {
+        ui.colored_label(error, format!("{}: {serious}", known.t("serious")));
+    }
+    let counts = own.is_of_last_request() && found > 0;
+    if counts && ui.link(format!("{}: {found}", known.t("findings"))).clicked() {
         view.state.side = Side::Findings;
     }
 }

@@ -4,6 +4,9 @@ use crate::actions::Action;
 use crate::known::{Known, Queue};
 use crate::planner::Failure;
 use crate::theme;
+use beadwright::Finding;
+use beadwright::check;
+use beadwright::finding::Severity;
 use eframe::egui::style::ScrollStyle;
 use eframe::egui::{RichText, ScrollArea, Ui};
 
@@ -36,8 +39,10 @@ pub(super) fn show(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
         for (i, message) in known.window.messages.iter().enumerate().rev() {
             line(ui, &message.text, message.error, || queue.push(Action::Dismiss(i)), close);
         }
-        for text in warnings {
-            ui.label(RichText::new(format!("• {text}")).weak());
+        for finding in warnings {
+            let text = RichText::new(format!("• {}", finding.sentence()));
+            let error = ui.visuals().error_fg_color;
+            ui.label(if finding.severity == Severity::Serious { text.color(error) } else { text.weak() });
         }
     });
 }
@@ -53,12 +58,7 @@ fn line(ui: &mut Ui, text: &str, error: bool, close: impl FnOnce(), hint: &str) 
     });
 }
 
-/// What was repaired in the model, and what the plan left out.
-fn warnings(known: Known<'_>) -> Vec<String> {
-    let part = known.plans.own.part.iter().flat_map(|part| part.repair().sentences());
-    let plan = known.plans.own.summary.iter().flat_map(|summary| {
-        let events = summary.warnings.summaries().map(|warning| warning.sentence());
-        events.chain(summary.notes.iter().cloned()).collect::<Vec<_>>()
-    });
-    part.chain(plan).collect()
+/// What was repaired in the model, what the plan left out, and why it should not be welded; not what the checks found.
+fn warnings(known: Known<'_>) -> Vec<&Finding> {
+    known.plans.own.reported.iter().filter(|finding| check::by_name(finding.kind).is_none()).collect()
 }

@@ -28,6 +28,9 @@ use crate::known::{Known, Queue, View};
 use crate::view::{Mode, Side};
 use eframe::egui::{Button, CentralPanel, Panel, ScrollArea, TextStyle, Ui, Vec2, vec2};
 
+/// The fraction of the window that a panel at its side takes at most.
+const WIDEST: f32 = 0.36;
+
 /// The whole window.
 pub(crate) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     Panel::top("menu").show(ui, |ui| menu::show(known, view, queue, ui));
@@ -54,13 +57,20 @@ fn around(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui)
     if view.state.mode == Mode::Compare && known.plans.other.is_some() {
         Panel::bottom("differences").show(ui, |ui| compare::differences(known, ui));
     }
-    Panel::left("parameters").default_size(300.0).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    // Beside the panels there must be room for the view, with large text too.
+    let widest = WIDEST * ui.available_width();
+    Panel::left("parameters").default_size(300.0).max_size(widest).show(ui, |ui| {
+        scrolled(ui, |ui| {
             placement::show(known, view, queue, ui);
             parameters::show(known, view, queue, ui);
         });
     });
-    Panel::right("side").default_size(330.0).show(ui, |ui| side(known, view, queue, ui));
+    Panel::right("side").default_size(330.0).max_size(widest).show(ui, |ui| side(known, view, queue, ui));
+}
+
+/// The contents of a panel. They scroll both ways, since a panel grows with whatever is wider than it.
+fn scrolled(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    ScrollArea::both().auto_shrink(false).show(ui, contents);
 }
 
 /// The size of a button with this text, so that the buttons next to it do not move when its own text changes.
@@ -73,9 +83,9 @@ fn room(ui: &Ui, text: String) -> Vec2 {
 fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     let tabs =
         [(Side::Totals, "totals"), (Side::Findings, "findings"), (Side::Plots, "plots"), (Side::Export, "export")];
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         for (side, key) in tabs {
-            let count = known.plans.own.findings.as_ref().filter(|_| side == Side::Findings).map_or(0, Vec::len);
+            let count = if side == Side::Findings { known.plans.own.found() } else { 0 };
             let text = if count > 0 { format!("{} ({count})", known.t(key)) } else { known.t(key).to_owned() };
             let widest = if side == Side::Findings { format!("{} (999)", known.t(key)) } else { text.clone() };
             let button = Button::selectable(view.state.side == side, text).min_size(room(ui, widest));
@@ -85,7 +95,7 @@ fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
         }
     });
     ui.separator();
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| match view.state.side {
+    scrolled(ui, |ui| match view.state.side {
         Side::Totals => totals::show(known, view, ui),
         Side::Findings => findings::show(known, view, ui),
         Side::Plots => plots::show(known, view, queue, ui),

@@ -3,12 +3,13 @@
 use super::{basic, process};
 use crate::actions;
 use crate::actions::Action;
-use crate::form::{self, Field, Kind, Section};
+use crate::form::{self, Field, Kind, Parsed, Section};
 use crate::jobs::Ask;
 use crate::known::{Known, Queue, View};
 use crate::text::Language;
 use beadwright::limit::Limit;
-use eframe::egui::{CollapsingHeader, ComboBox, DragValue, Grid, Label, Response, RichText, TextEdit, Ui};
+use beadwright::profile::Profile;
+use eframe::egui::{CollapsingHeader, Color32, ComboBox, DragValue, Grid, Label, Response, RichText, TextEdit, Ui};
 
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     ui.separator();
@@ -30,8 +31,8 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     if let Some((key, reason)) = known.open.refused.clone().filter(|(key, _)| !shown(key)) {
         ui.colored_label(ui.visuals().error_fg_color, format!("{} {key}: {reason}", known.t("impossible")));
     }
-    let mut form =
-        Form { known, search: view.state.search.to_lowercase(), queue, values: &parsed.values, limits: &parsed.limits };
+    let (search, Parsed { profile, values, limits, .. }) = (view.state.search.to_lowercase(), &*parsed);
+    let mut form = Form { known, search, queue, profile, values, limits };
     if all {
         form::sections().iter().for_each(|section| form.section(ui, section));
     } else {
@@ -45,6 +46,7 @@ pub(super) struct Form<'a> {
     /// What is searched for, in lower case.
     search: String,
     pub(super) queue: &'a mut Queue,
+    profile: &'a Profile,
     values: &'a toml::Table,
     limits: &'a [Limit],
 }
@@ -120,8 +122,11 @@ impl Form<'_> {
         let hint = self.hint(field, limit);
         let refused = self.known.open.refused.as_ref().is_some_and(|(key, _)| *key == field.key);
         let mut name = RichText::new(name);
+        let unusual = limit.filter(|_| value.is_some()).and_then(|limit| self.unusual(limit));
         if refused {
             name = name.color(ui.visuals().error_fg_color);
+        } else if unusual.is_some() {
+            name = name.color(ui.visuals().warn_fg_color);
         }
         let label = ui.label(name).on_hover_text(&hint);
         ui.horizontal(|ui| {
@@ -141,10 +146,18 @@ impl Form<'_> {
         // Shown right where the value was typed, so that it is noticed.
         if let Some((_, reason)) = self.known.open.refused.as_ref().filter(|(key, _)| *key == field.key) {
             let text = format!("{} {reason}", self.known.t("impossible"));
-            ui.label("");
-            ui.add(Label::new(RichText::new(text).color(ui.visuals().error_fg_color)).wrap());
-            ui.end_row();
+            below(ui, text, ui.visuals().error_fg_color);
+        } else if let Some(text) = unusual {
+            below(ui, text, ui.visuals().warn_fg_color);
         }
+    }
+
+    /// What a number usually is, if it is something else.
+    fn unusual(&self, limit: &Limit) -> Option<String> {
+        let (least, most) = self.profile.usual(limit.key)?;
+        let (usual, to) = (self.known.t("usual"), self.known.t("to"));
+        let text = || format!("{usual} {least} {to} {most} {}", unit(limit));
+        (!(least..=most).contains(&limit.value)).then(text)
     }
 
     /// What the key means, which values it can have, and why.
@@ -160,6 +173,13 @@ impl Form<'_> {
         let words: String = words.iter().map(|(word, about)| format!("\n• {word}: {about}")).collect();
         format!("{}\n{}{}{words}", field.key, field.about, range.unwrap_or_default())
     }
+}
+
+/// A sentence in a row of its own below a field.
+fn below(ui: &mut Ui, text: String, colour: Color32) {
+    ui.label("");
+    ui.add(Label::new(RichText::new(text).color(colour)).wrap());
+    ui.end_row();
 }
 
 /// The widget of a field, and the new value as TOML if it was changed.
@@ -180,7 +200,8 @@ fn widget(
         Kind::Choice(words) => choice(ui, &field.key, words, value),
         Kind::Text => {
             let mut text = value.and_then(toml::Value::as_str).unwrap_or_default().to_owned();
-            let response = ui.add(TextEdit::singleline(&mut text).desired_width(180.0));
+            let width = room(ui).min(180.0);
+            let response = ui.add(TextEdit::singleline(&mut text).desired_width(width));
             let changed = response.changed().then(|| quoted(&text));
             (response, changed)
         }
@@ -241,12 +262,19 @@ fn choice(
     (combo.response, chosen)
 }
 
+/// Width for a text field in its row, which ends with the button that removes its value.
+fn room(ui: &Ui) -> f32 {
+    const LEAST: f32 = 80.0;
+    (ui.available_width() - ui.spacing().interact_size.x).max(LEAST)
+}
+
 fn lines(ui: &mut Ui, value: Option<&toml::Value>) -> (Response, Option<String>) {
     let now: Vec<&str> =
         value.and_then(toml::Value::as_array).into_iter().flatten().filter_map(|v| v.as_str()).collect();
     let mut text = now.join("\n");
     let rows = now.len().max(1);
-    let edit = TextEdit::multiline(&mut text).code_editor().desired_rows(rows).desired_width(f32::INFINITY);
+    let width = room(ui);
+    let edit = TextEdit::multiline(&mut text).code_editor().desired_rows(rows).desired_width(width);
     let response = ui.add(edit);
     let changed = response.changed().then(|| {
         let quoted: Vec<String> = text.lines().map(quoted).collect();

@@ -3,17 +3,21 @@
 use crate::actions::{Action, ENTRIES};
 use crate::known::{Known, Queue, View};
 use crate::planner::Failure;
+use crate::view::Side;
+use beadwright::Finding;
 use beadwright::model::{Placement, Units};
 use eframe::egui::{Align2, Button, DragValue, Grid, Key, TextEdit, Ui, Window, vec2};
 
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &Ui) {
     lost(known, queue, ui);
     match known.plans.own.failure.clone() {
-        Some(Failure::Units(text)) => units(known, queue, ui, &text),
+        Some(Failure::Units(text, sizes)) => units(known, queue, ui, &text, &sizes),
+        Some(Failure::Damaged(text)) => damaged(known, queue, ui, &text),
         Some(Failure::Height(text)) => height(known, queue, ui, &text),
         _ => {}
     }
     closing(known, queue, ui);
+    doubted(known, view, queue, ui);
     path(known, view, queue, ui);
     keys(known, view, ui);
 }
@@ -70,6 +74,48 @@ fn closing(known: Known<'_>, queue: &mut Queue, ui: &Ui) {
     });
 }
 
+/// Asks before a program with serious findings is exported.
+fn doubted(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &Ui) {
+    const SHOWN: usize = 3;
+    if !known.jobs.doubted {
+        return;
+    }
+    window(known.t("doubted-title")).show(ui.ctx(), |ui| {
+        let serious: Vec<&Finding> = known.plans.own.serious().collect();
+        serious.iter().take(SHOWN).for_each(|finding| drop(ui.label(finding.sentence())));
+        if serious.len() > SHOWN {
+            ui.weak(format!("… {}", serious.len() - SHOWN));
+        }
+        ui.horizontal(|ui| {
+            if ui.button(known.t("show-findings")).clicked() {
+                view.state.side = Side::Findings;
+                queue.push(Action::DecideExport(false));
+            }
+            if ui.button(known.t("export-anyway")).clicked() {
+                queue.push(Action::DecideExport(true));
+            }
+            if ui.button(known.t("cancel")).clicked() {
+                queue.push(Action::DecideExport(false));
+            }
+        });
+    });
+}
+
+/// Asks whether the rest of a damaged model is to be used.
+fn damaged(known: Known<'_>, queue: &mut Queue, ui: &Ui, text: &str) {
+    window(known.t("damaged-title")).show(ui.ctx(), |ui| {
+        ui.label(text);
+        ui.horizontal(|ui| {
+            if ui.button(known.t("skip-damaged")).clicked() {
+                queue.push(Action::AcceptDamaged);
+            }
+            if ui.button(known.t("cancel")).clicked() {
+                queue.push(Action::DismissFailure);
+            }
+        });
+    });
+}
+
 fn window<'a>(title: &'a str) -> Window<'a> {
     Window::new(title)
         .min_width(420.0)
@@ -94,13 +140,13 @@ fn lost(known: Known<'_>, queue: &mut Queue, ui: &Ui) {
     });
 }
 
-fn units(known: Known<'_>, queue: &mut Queue, ui: &Ui, text: &str) {
+fn units(known: Known<'_>, queue: &mut Queue, ui: &Ui, text: &str, sizes: &[String; 4]) {
     window(known.t("units-title")).show(ui.ctx(), |ui| {
-        // After the first sentences the text names the command's options; here the buttons replace them.
+        // The buttons say the rest.
         ui.label(text.split(" Say which").next().unwrap_or(text));
-        ui.horizontal(|ui| {
-            for (name, units) in Units::ALL {
-                if ui.button(name).clicked() {
+        ui.vertical(|ui| {
+            for ((name, units), size) in Units::ALL.into_iter().zip(sizes) {
+                if ui.button(format!("{name}: {size} mm")).clicked() {
                     queue.push(Action::Place(Placement { units: Some(units), ..known.project().placement }));
                 }
             }

@@ -52,6 +52,7 @@ pub(super) fn picture(
 ) -> Rect {
     view.solid.caption = caption(known, view);
     view.solid.no_adapter = known.t("no-adapter").to_owned();
+    view.solid.pin = view.state.pin.as_ref().map(|pin| pin.at);
     view.solid.camera.orthographic = view.state.parallel;
     view.solid.camera.held = known.held(view.state).map_or(Frame::IDENTITY, Frame::from);
     let shown = view.solid.show(ui, known.window.render_state.as_ref(), &known.plans.own.scene, style, label);

@@ -11,7 +11,7 @@ use beadwright::compare::MAP_PIXELS;
 use beadwright::deposit::{Judge, Judgement};
 use beadwright::example;
 use beadwright::layer::Layer;
-use beadwright::model::{ImportError, Mesh, Model, Part, PartError, Placement};
+use beadwright::model::{ImportError, Mesh, Model, Part, PartError, Placement, Units};
 use beadwright::pass::Segment;
 use beadwright::plan::choice::{self, Choice};
 use beadwright::plan::stock::Stocked;
@@ -26,10 +26,13 @@ use std::sync::Arc;
 /// What has been read and placed, kept so that it need not be done again.
 #[derive(Default)]
 pub(super) struct Cache {
-    model: Option<(Source, Option<Stamp>, Model)>,
+    model: Option<(ModelKey, Model)>,
     part: Option<(PartKey, Arc<Part>)>,
     mesh: Option<(Arc<Part>, Arc<Mesh>)>,
 }
+
+/// What a model depends on: its source, when it was changed, and whether a damaged one is used.
+type ModelKey = (Source, Option<Stamp>, bool);
 
 /// What a placed part depends on besides its model; the bead width is used in guessing the units.
 #[derive(Clone, Copy, PartialEq)]
@@ -152,10 +155,11 @@ impl Cache {
             Source::File(path) => disk::stamp(path),
             Source::Example(_) => None,
         };
-        let fresh = self.model.as_ref().is_some_and(|(of, at, _)| of == source && *at == changed);
+        let file = (source.clone(), changed, project.accept_damaged);
+        let fresh = self.model.as_ref().is_some_and(|(of, _)| *of == file);
         if !fresh {
             self.part = None;
-            self.model = Some((source.clone(), changed, read(source, task)?));
+            self.model = Some((file, read(source, project.accept_damaged, task)?));
         }
         let bead_width = profile.bead.width;
         let preform = project.preform.then(|| profile.preform_settings());
@@ -163,7 +167,7 @@ impl Cache {
         if let Some((_, part)) = self.part.as_ref().filter(|(of, _)| *of == key) {
             return Ok(part.clone());
         }
-        let Some((_, _, model)) = &self.model else { return Err(Stop::Cancelled) };
+        let Some((_, model)) = &self.model else { return Err(Stop::Cancelled) };
         let part = model.clone().place(&project.placement, project.height, bead_width);
         let part = part.map_err(|error| refused(source, &error))?;
         let part = if project.preform { Stocked::of(part, profile, task)?.part } else { part };
@@ -173,7 +177,7 @@ impl Cache {
     }
 }
 
-fn read(source: &Source, task: &Task) -> Result<Model, Stop> {
+fn read(source: &Source, accept_damaged: bool, task: &Task) -> Result<Model, Stop> {
     let bytes = match source {
         Source::File(path) => disk::read(path).map_err(|text| Stop::Failed(Failure::Sentence(text)))?,
         Source::Example(name) => {
@@ -182,14 +186,18 @@ fn read(source: &Source, task: &Task) -> Result<Model, Stop> {
             found.stl()
         }
     };
-    Model::read(&bytes, task).map_err(|error| refused(source, &error))
+    let read = if accept_damaged { Model::read_damaged } else { Model::read };
+    read(&bytes, task).map_err(|error| refused(source, &error))
 }
 
 fn refused(source: &Source, error: &PartError) -> Stop {
     let text = format!("{}: {error}", source.label());
     match error {
         PartError::Import(ImportError::Cancelled(_)) => Stop::Cancelled,
-        PartError::Units(_) => Stop::Failed(Failure::Units(text)),
+        PartError::Units(unclear) => {
+            Stop::Failed(Failure::Units(text, Units::ALL.map(|(_, units)| unclear.size_in(units))))
+        }
+        PartError::Import(ImportError::Damaged { .. }) => Stop::Failed(Failure::Damaged(text)),
         PartError::NoHeight => Stop::Failed(Failure::Height(text)),
         _ => Stop::Failed(Failure::Sentence(text)),
     }

@@ -94,6 +94,10 @@ pub struct View2d {
     eye: Option<Eye>,
     /// Whether clicks measure.
     pub measuring: bool,
+    /// A place that is marked, mm.
+    pub pin: Option<DVec2>,
+    /// A place to be framed when the view is next shown, and how much around it, mm.
+    framed: Option<(DVec2, f64)>,
     measure: Vec<DVec2>,
     map: Option<(Arc<Judgement>, TextureHandle)>,
 }
@@ -123,11 +127,9 @@ impl View2d {
         self.eye = None;
     }
 
-    /// Moves a place (mm) to the middle, zoomed in far enough to see beads.
-    pub fn look_at(&mut self, place: DVec2) {
-        const NEAR: f64 = 8.0;
-        let scale = self.eye.map_or(NEAR, |eye| eye.scale.max(NEAR));
-        self.eye = Some(Eye { centre: place, scale });
+    /// Moves a place to the middle, with this much around it from edge to edge, mm.
+    pub fn frame(&mut self, place: DVec2, room: f64) {
+        self.framed = Some((place, room));
     }
 
     /// Shows the same place as another view.
@@ -158,6 +160,9 @@ impl View2d {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, label));
         let bounds = bounds(&subject);
+        if let Some((centre, room)) = self.framed.take() {
+            self.eye = Some(Eye { centre, scale: f64::from(rect.width().min(rect.height())) / room.max(1e-3) });
+        }
         let mut eye = self.eye.unwrap_or_else(|| Eye::fitting(&bounds, rect));
         move_eye(&mut eye, ui, &response, rect);
         if response.double_clicked() {
@@ -176,6 +181,7 @@ impl View2d {
             pen.steps(subject.steps.0, &subject.steps.1);
         }
         pen.chosen(&subject);
+        self.pin.into_iter().for_each(|place| ring(&painter, pen.at(place), ui.visuals().warn_fg_color));
         self.measures(&pen);
         pen.scale_bar();
         if subject.layer.passes.is_empty() {
@@ -234,6 +240,13 @@ impl View2d {
             pen.painter.circle_stroke(pen.at(void.place), radius, Stroke::new(1.5, VOID));
         }
     }
+}
+
+/// Marks a place with a ring.
+pub fn ring(painter: &egui::Painter, at: Pos2, colour: Color32) {
+    const RADIUS: f32 = 16.0;
+    painter.circle_stroke(at, RADIUS, Stroke::new(5.0, Color32::from_black_alpha(140)));
+    painter.circle_stroke(at, RADIUS, Stroke::new(3.0, colour));
 }
 
 impl Drawing<'_> {

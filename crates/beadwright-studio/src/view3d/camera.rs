@@ -176,6 +176,12 @@ impl Camera {
         (self.yaw, self.pitch) = (yaw.to_radians(), pitch.to_radians());
     }
 
+    /// Moves so that a point (mm) is in the middle of a picture of this height (mm); the direction stays.
+    pub fn frame(&mut self, point: DVec3, height: f64) {
+        self.target = self.held.apply(point);
+        self.distance = height / (2.0 * HALF_VIEW_TAN);
+    }
+
     /// Moves so that a box (lowest and highest corner, mm) fills the picture; the direction stays.
     pub fn fit(&mut self, (low, high): (DVec3, DVec3), size: DVec2) {
         let corners: [DVec3; 8] = std::array::from_fn(|i| {

@@ -85,10 +85,14 @@ pub struct View3d {
     pub caption: String,
     /// Places that must be in the picture too when the scene is fitted into it, mm.
     pub around: Vec<DVec3>,
+    /// A place that is marked, mm.
+    pub pin: Option<DVec3>,
     gpu: Option<Gpu>,
     /// The fine and the coarse picture.
     frames: [Option<Frame>; 2],
     fit: bool,
+    /// A place to be framed when the view is next shown, and the height of the picture there, mm.
+    framed: Option<(DVec3, f64)>,
     wheel_at: f64,
     hovered: Option<(Key, egui::Pos2, Option<Pick>)>,
 }
@@ -102,9 +106,11 @@ impl Default for View3d {
                 .to_owned(),
             caption: String::new(),
             around: Vec::new(),
+            pin: None,
             gpu: None,
             frames: [None, None],
             fit: true,
+            framed: None,
             wheel_at: f64::NEG_INFINITY,
             hovered: None,
         }
@@ -115,6 +121,11 @@ impl View3d {
     /// Fits the scene into the picture when it is next shown, or as soon as there is one.
     pub fn fit(&mut self) {
         self.fit = true;
+    }
+
+    /// Moves a place (mm) to the middle of a picture of this height (mm).
+    pub fn frame(&mut self, place: DVec3, height: f64) {
+        (self.framed, self.fit) = (Some((place, height)), false);
     }
 
     /// Keeps the camera where it is, also when the view is shown for the first time.
@@ -146,6 +157,9 @@ impl View3d {
             self.camera.fit_points(&seen.collect::<Vec<_>>(), size);
             self.fit = false;
         }
+        if let Some((place, height)) = self.framed.take() {
+            self.camera.frame(place, height);
+        }
         let clicked = response.clicked();
         let mut shown = Shown { picked: None, sight: None, clicked, hovered: None, rendered: false, response };
         let Some(state) = state else {
@@ -154,11 +168,15 @@ impl View3d {
         };
         let scale = ui.ctx().pixels_per_point();
         let pixels = [rect.width(), rect.height()].map(|length| ((length * scale).round() as u32).max(1));
-        let (texture, key, rendered) = self.frame(state, scene, style, pixels, moving);
+        let (texture, key, rendered) = self.rendered(state, scene, style, pixels, moving);
         shown.rendered = rendered;
         let painter = ui.painter().with_clip_rect(rect);
         painter.image(texture, rect, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
         overlay::paint(&painter, rect, &self.camera, &self.caption, style.dark);
+        if let Some(at) = self.pin.and_then(|pin| self.camera.project(pin, size)) {
+            let at = rect.min + egui::vec2(at.x as f32, at.y as f32);
+            crate::view2d::ring(&painter, at, ui.visuals().warn_fg_color);
+        }
         let at = |pos: egui::Pos2| DVec2::new(f64::from(pos.x - rect.left()), f64::from(pos.y - rect.top()));
         if shown.clicked {
             let pos = shown.response.interact_pointer_pos();
@@ -202,7 +220,7 @@ impl View3d {
     }
 
     /// The picture, rendered again if anything changed: its texture, what it shows, and whether it is new.
-    fn frame(
+    fn rendered(
         &mut self,
         state: &RenderState,
         scene: &Scene,
@@ -297,7 +315,7 @@ impl View3d {
         gpu.wait()?;
         let upload = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
-        self.frame(state, scene, style, size, moving);
+        self.rendered(state, scene, style, size, moving);
         let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
         gpu.wait()?;
         Ok(Timing { upload, render: clock.elapsed().as_secs_f64() })

@@ -51,7 +51,12 @@ fn broken_files_are_reported_and_the_program_lives_on() {
         wait(&mut harness);
         let message = match (harness.state().messages().get(known), &harness.state().plan().failure) {
             (Some(message), _) => message.text.clone(),
-            (None, Some(Failure::Sentence(text) | Failure::Units(text) | Failure::Height(text))) => text.clone(),
+            (
+                None,
+                Some(
+                    Failure::Sentence(text) | Failure::Units(text, _) | Failure::Damaged(text) | Failure::Height(text),
+                ),
+            ) => text.clone(),
             (None, None) => panic!("{} is taken", path.display()),
         };
         let name = path.file_name().unwrap().to_string_lossy();
@@ -78,9 +83,34 @@ fn a_part_in_inches_is_asked_about() {
     let mut harness = studio(&folder.path().join("store"));
     harness.state_mut().open(&path);
     wait(&mut harness);
-    assert!(matches!(harness.state().plan().failure, Some(Failure::Units(_))));
-    window::click(&mut harness, "in");
+    assert!(matches!(harness.state().plan().failure, Some(Failure::Units(..))));
+    // Every button says what would come of it.
+    for size in ["mm: 3.94 × 3.94 × 0.79 mm", "cm: 39 × 39 × 8 mm", "m: 3937 × 3937 × 787 mm"] {
+        assert!(window::sees(&harness, size), "{size} is not on the screen");
+    }
+    window::click(&mut harness, "in: 100 × 100 × 20 mm");
     wait(&mut harness);
     let (low, high) = harness.state().plan().part.as_ref().unwrap().bounds();
     assert!(((high - low).x - 100.0).abs() < 1e-3 && harness.state().plan().is_complete());
+}
+
+#[test]
+fn broken_faces_of_an_obj_are_skipped_on_a_click() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = beadwright::example::find("cross").unwrap().mesh();
+    let mut text: String = mesh.vertices.iter().map(|v| format!("v {} {} {}\n", v.x, v.y, v.z)).collect();
+    text += "f 1 2 999999\n";
+    text.extend(mesh.triangles.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1)));
+    let path = folder.path().join("broken.obj");
+    std::fs::write(&path, text).unwrap();
+    let mut harness = studio(&folder.path().join("store"));
+    harness.state_mut().open(&path);
+    wait(&mut harness);
+    let Some(Failure::Damaged(text)) = &harness.state().plan().failure else { panic!("nothing is asked") };
+    assert!(text.contains("1 face refers") && !text.contains("--"), "{text}");
+    window::click(&mut harness, "Skip what is broken");
+    wait(&mut harness);
+    assert!(harness.state().plan().is_complete() && harness.state().project().accept_damaged);
+    // It is said in the messages what was left out.
+    assert!(harness.query_all_by_label_contains("The file is damaged and was read as it is: 1 face").next().is_some());
 }

@@ -23,8 +23,14 @@ fn a_project_comes_back_exactly() {
         let profile = format!("{text}\n# \"\"\" ''' \\n\ttab  \n");
         for source in [None, Some(Source::Example("gear".to_owned())), Some(Source::File(PathBuf::from("/a b/ü.stl")))]
         {
-            let project =
-                Project { source, placement, preform: true, height: Some(0.1 + 0.2), profile: profile.clone() };
+            let project = Project {
+                source,
+                placement,
+                accept_damaged: true,
+                preform: true,
+                height: Some(0.1 + 0.2),
+                profile: profile.clone(),
+            };
             let written = project.write(None).unwrap();
             assert_eq!(Project::read(&written, None).unwrap(), project, "{written}");
         }

@@ -302,8 +302,8 @@ pub fn grouped(findings: &[Finding]) -> Vec<Finding> {
     CHECKS.iter().filter_map(of).collect()
 }
 
-/// Everything to report about a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`]),
-/// its warnings, what was mended in the model (sentences), and its notes. Nothing is said twice; remedies are worded
+/// Everything to report about a plan, the worst first: what forbids it, what the checks found (`found`, [`grouped`] or
+/// one by one), its warnings, what was mended in the model (sentences), and its notes. Nothing is said twice; remedies are worded
 /// for the program in use (`words`).
 pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> Vec<Finding> {
     let warned: Vec<Finding> = summary.warnings.summaries().map(Finding::from).collect();
@@ -313,12 +313,33 @@ pub fn all_findings(summary: &Summary, model: &[String], found: &[Finding]) -> V
     let mut all: Vec<Finding> = checks.chain(warned).collect();
     let forbidden = summary.forbidden.iter().filter(|text| !said.contains(*text));
     all.extend(forbidden.map(new("refused", Severity::Serious)));
+    all.extend(lost_geometry(summary));
     all.extend(summary.notes.iter().map(new("plan", Severity::Doubt)));
     all.extend(model.iter().map(new("model", Severity::Note)));
     let mut known = BTreeSet::new();
     all.retain(|finding| known.insert(finding.text.clone()));
     all.sort_by_key(|finding| finding.severity);
     all
+}
+
+/// Below this share of the slices, planned, part of the geometry is lost; below the second, the part is another one.
+const WHOLE: f64 = 0.9;
+const ANOTHER: f64 = 0.75;
+
+/// What to say of a plan that leaves out much of its part, for whatever reasons.
+fn lost_geometry(summary: &Summary) -> Option<Finding> {
+    let (metrics, share) = (&summary.metrics, summary.metrics.coverage());
+    if metrics.slice_area_mm2 <= 0.0 || share >= WHOLE {
+        return None;
+    }
+    let bare = (metrics.slice_area_mm2 - metrics.planned_area_mm2) / 100.0;
+    let severity = if share < ANOTHER { Severity::Serious } else { Severity::Doubt };
+    let text = format!(
+        "Only {:.0} % of the part is planned: {bare:.1} cm² of its slices, all together, stay without metal.",
+        100.0 * share
+    );
+    let remedy = "Choose narrower beads or a strategy for narrow places (hybrid, wall), or plan a preform.".to_owned();
+    Some(Finding { remedy: Some(remedy), ..Finding::new("lost-geometry", severity, text) }.sized(100.0 * share))
 }
 
 /// Whether a warning of the plan already says what a check of that name finds.

@@ -188,6 +188,8 @@ pub struct PlanFiles {
     figures: Vec<Figures>,
     points: usize,
     found: Option<Vec<Finding>>,
+    /// The same one by one, for the report.
+    all: Vec<Finding>,
     /// How the built part ends, once checked.
     built: Option<Growth>,
     selection: Selection,
@@ -225,6 +227,7 @@ impl PlanFiles {
             figures: Vec::new(),
             points: 0,
             found: None,
+            all: Vec::new(),
             built: None,
             selection,
             totals,
@@ -285,15 +288,14 @@ impl PlanFiles {
     pub fn check(&mut self, task: &Task) -> Result<&[Finding], Cancelled> {
         if self.found.is_none() {
             let (layers, figures) = (std::mem::take(&mut self.layers), std::mem::take(&mut self.figures));
-            let mut findings = Vec::new();
             if !layers.is_empty() {
                 let settings = plan::deposit_settings_over(&self.profile, self.part);
                 let grown = check::grown(&layers, &self.profile, settings, task)?;
                 self.built = grown.worst();
                 let judged = LayerFigures { figures, grown, ..LayerFigures::default() };
-                findings = check::check_figures(&layers, &self.profile, judged);
+                self.all = check::check_figures(&layers, &self.profile, judged);
             }
-            self.found = Some(check::grouped(&findings));
+            self.found = Some(check::grouped(&self.all));
         }
         Ok(self.found.as_deref().unwrap_or_default())
     }
@@ -325,10 +327,10 @@ impl PlanFiles {
             metrics["programs"] = serde_json::json!(totals);
         }
         metrics["built"] = serde_json::json!(self.built);
-        let findings = check::all_findings(summary, &repair.sentences(), &found);
-        metrics["findings"] = serde_json::json!(findings);
+        let all = |found: &[Finding]| check::all_findings(summary, &repair.sentences(), found);
+        metrics["findings"] = serde_json::json!(all(&found));
         chunks.push(Chunk::new(METRICS, format!("{metrics:#}\n")));
-        chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &findings)));
+        chunks.push(Chunk::new(REPORT, self.report.finish(summary, repair, &names, &all(&self.all))));
         Ok(chunks)
     }
 

@@ -18,6 +18,7 @@ mod one_loop;
 mod order;
 mod read;
 mod slice;
+mod usual;
 mod wall;
 
 pub use bead::BeadSection;

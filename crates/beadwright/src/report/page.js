@@ -26,7 +26,7 @@ function tellLayer() {
   list.hidden = !head.warnings;
   list.replaceChildren(...layer.warnings.map(([x, y, text]) => {
     const item = element("li", `${text} near x ${x.toFixed(1)} y ${y.toFixed(1)} mm`), button = element("button", "Show");
-    button.onclick = () => goTo(shown.index, x, y);
+    button.onclick = () => goTo({ layer: shown.index, x, y });
     item.append(button);
     return item;
   }));
@@ -182,8 +182,8 @@ function connect() {
     radio.onchange = () => { $("stages").dataset.view = radio.value; resize(); };
   });
   document.querySelectorAll("[data-layer]").forEach(button => {
-    const { layer, x, y } = button.dataset;
-    button.onclick = () => goTo(Number(layer), Number(x), Number(y));
+    const place = Object.fromEntries(Object.entries(button.dataset).map(([name, value]) => [name, Number(value)]));
+    button.onclick = () => goTo(place);
   });
   $("fit").onclick = picture.ondblclick;
   $("solid-fit").onclick = solid.ondblclick;

@@ -63,16 +63,29 @@ async function pointOut(found, x, y) {
 function pointOutNext(by) {
   const { layer, index, picked } = shown, count = layer?.passes.length;
   if (!count) return;
-  const now = picked?.layer === index ? picked.pass : by > 0 ? -1 : 0, number = (now + by + count) % count;
-  const { left, top } = $("stages").getBoundingClientRect();
-  pointOut({ layer: index, pass: number, seconds: layer.passes[number].start }, left, Math.max(top, 0));
+  const now = picked?.layer === index ? picked.pass : by > 0 ? -1 : 0;
+  pointOutPass((now + by + count) % count);
 }
 
-// The layer and the place of a warning, closer.
-function goTo(layer, x, y) {
-  closeUp(layer, x, y);
+// A pass of the layer shown, by its number.
+function pointOutPass(number) {
+  const { layer, index } = shown, { left, top } = $("stages").getBoundingClientRect();
+  if (layer.passes[number]) pointOut({ layer: index, pass: number, seconds: layer.passes[number].start }, left, Math.max(top, 0));
+}
+
+// The layer of a finding, its place closer and its pass pointed out, as far as they are known.
+async function goTo({ layer, x, y, pass }) {
+  if (x === undefined) showAll(); else closeUp(layer, x, y);
   $("viewer").scrollIntoView({ block: "start" });
-  show(layer);
+  await show(layer);
+  if (pass !== undefined && shown.index === layer) pointOutPass(pass);
+}
+
+// All of the part in both pictures, and no place marked.
+function showAll() {
+  shown.mark = null;
+  space.camera.fitted = true;
+  fit();
 }
 
 // Both pictures close to a place, which is marked.

@@ -74,7 +74,8 @@ pub(super) fn state(summary: &Summary, findings: &[Finding]) -> String {
 /// Why the program should not be started, with the places; nothing for a plan that can be welded.
 pub(super) fn refused(summary: &Summary) -> String {
     let place = |reason: &String| {
-        summary.warnings.summaries().find(|w| w.sentence() == *reason).map(|w| (w.largest.layer, w.largest.place))
+        let warning = summary.warnings.summaries().find(|w| w.sentence() == *reason)?;
+        Some(Seen { layer: warning.largest.layer, pass: None, place: Some(warning.largest.place) })
     };
     let item = |reason: &String| {
         let link = place(reason).map(link).unwrap_or_default();
@@ -227,14 +228,12 @@ pub(super) fn files(files: &[String]) -> String {
     format!("<ul class=\"files\" tabindex=\"0\" aria-label=\"Files, a scrollable list\">\n{items}\n</ul>")
 }
 
-/// All findings, the worst first, or a line that says there are none.
+/// All findings, the worst first, or a line that says there are none. Of those of one kind the first is shown, and the
+/// others on request.
 pub(super) fn warnings(summary: &Summary, findings: &[Finding]) -> String {
-    let item = |finding: &Finding| {
-        let place = finding.layer.zip(finding.place.map(|place| place.truncate())).map(link).unwrap_or_default();
-        let (word, name) = (finding.severity.title(), finding.kind);
-        format!("<li><b title=\"{name}\">{word}</b> {}{place}</li>", escape(&finding.sentence()))
-    };
-    let items: Vec<String> = remarks(summary, findings).map(item).collect();
+    let all: Vec<&Finding> = remarks(summary, findings).collect();
+    let alike = |a: &&Finding, b: &&Finding| (a.severity, a.kind) == (b.severity, b.kind);
+    let items: Vec<String> = all.chunk_by(alike).filter_map(|found| found.split_first()).map(alike_ones).collect();
     if items.is_empty() {
         return "<p class=\"good\">Nothing was lost: the model needed no repair, no pass was left out, and the values \
                 of the profile fit together.</p>"
@@ -243,22 +242,45 @@ pub(super) fn warnings(summary: &Summary, findings: &[Finding]) -> String {
     format!("<ul class=\"warnings\">\n{}\n</ul>", items.join("\n"))
 }
 
+/// A finding, and others of its kind.
+fn alike_ones((first, rest): (&&Finding, &[&Finding])) -> String {
+    let (word, name) = (first.severity.title(), first.kind);
+    let class = if first.severity == Severity::Serious { " class=\"serious\"" } else { "" };
+    let more: Vec<String> =
+        rest.iter().map(|finding| format!("<li>{}{}</li>", escape(&finding.text), link_of(finding))).collect();
+    let more = match more.len() {
+        0 => String::new(),
+        n => format!("<details><summary>And {n} more</summary><ul>\n{}\n</ul></details>", more.join("\n")),
+    };
+    format!("<li{class}><b title=\"{name}\">{word}</b> {}{}{more}</li>", escape(&first.sentence()), link_of(first))
+}
+
+/// A button that shows where a finding is; nothing for one about the whole plan.
+fn link_of(finding: &Finding) -> String {
+    let place = finding.place.map(|place| place.truncate());
+    finding.layer.map(|layer| link(Seen { layer, pass: finding.pass, place })).unwrap_or_default()
+}
+
 /// The findings that are not at the head of the page, where those that forbid the program are.
 fn remarks<'a>(summary: &'a Summary, findings: &'a [Finding]) -> impl Iterator<Item = &'a Finding> {
     findings.iter().filter(|finding| !summary.forbidden.contains(&finding.sentence()))
 }
 
-/// A layer and a place on it, mm.
-type Seen = (usize, DVec2);
+/// Where something is: a layer, and as far as known a pass of it, from 0, and a place on it, mm.
+struct Seen {
+    layer: usize,
+    pass: Option<usize>,
+    place: Option<DVec2>,
+}
 
-/// A button that shows the place of a warning.
-fn link((layer, place): Seen) -> String {
-    format!(
-        "<button data-layer=\"{layer}\" data-x=\"{:.2}\" data-y=\"{:.2}\">Show on layer {}</button>",
-        place.x,
-        place.y,
-        layer + 1
-    )
+/// A button that shows where something is.
+fn link(Seen { layer, pass, place }: Seen) -> String {
+    let at = place.map(|at| format!(" data-x=\"{:.2}\" data-y=\"{:.2}\"", at.x, at.y)).unwrap_or_default();
+    let (number, name) = match pass {
+        Some(pass) => (format!(" data-pass=\"{pass}\""), format!(", pass {}", pass + 1)),
+        None => Default::default(),
+    };
+    format!("<button data-layer=\"{layer}\"{at}{number}>Show on layer {}{name}</button>", layer + 1)
 }
 
 fn table(rows: &[(&str, String)]) -> String {

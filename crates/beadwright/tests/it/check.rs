@@ -4,6 +4,7 @@ use crate::common;
 
 use beadwright::bead::Law;
 use beadwright::check::{self, CHECKS};
+use beadwright::finding::Severity;
 use beadwright::layer::Layer;
 use beadwright::pass::Along;
 use beadwright::plan;
@@ -443,4 +444,21 @@ fn every_check_says_what_why_and_what_to_do() {
     names.sort_unstable();
     names.dedup();
     assert_eq!(names.len(), CHECKS.len());
+}
+
+#[test]
+fn geometry_that_is_lost_is_a_finding() {
+    let profile = common::profile("cmt-al2319-kuka");
+    let mut summary = common::planned("cross", &profile).summary;
+    let lost = |summary: &plan::Summary| {
+        let found = check::all_findings(summary, &[], &[]).into_iter();
+        found.map(|finding| (finding.kind, finding.severity, finding.text)).find(|(kind, ..)| *kind == "lost-geometry")
+    };
+    assert_eq!(lost(&summary), None, "the cross is planned whole");
+    for (share, severity) in [(0.85, Severity::Doubt), (0.74, Severity::Serious)] {
+        summary.metrics.planned_area_mm2 = share * summary.metrics.slice_area_mm2;
+        let (_, found, text) = lost(&summary).expect("nothing is said");
+        assert_eq!(found, severity);
+        assert!(text.contains(&format!("Only {:.0} % of the part", 100.0 * share)), "{text}");
+    }
 }

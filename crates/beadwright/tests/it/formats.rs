@@ -367,3 +367,13 @@ fn files_of_others() {
     assert!(obj.repair.open_edges < stl.repair.open_edges, "{:?}", obj.repair);
     assert_eq!(of("self_intersect.obj").repair.triangles_read, 17_160);
 }
+
+#[test]
+fn faces_of_an_obj_that_refer_nowhere_are_skipped_on_request() {
+    let text = obj(&cross()) + "f 1 2 999999\nf 3 -999999 4\n";
+    let Err(ImportError::Damaged { reason }) = read(text.as_bytes()) else { panic!("the file is taken") };
+    assert!(reason.starts_with("2 faces refer to vertices") && reason.contains("line "), "{reason}");
+    let taken = model::import_damaged(text.as_bytes(), &Task::new()).unwrap();
+    assert_eq!(taken.repair.damage, Some(reason));
+    assert!((taken.mesh.volume() / cross().volume() - 1.0).abs() < 1e-5);
+}

@@ -23,6 +23,7 @@ mod check;
 mod check_pages;
 mod cnc;
 mod common;
+mod compare;
 mod control_flow;
 mod cost;
 mod crashes;

@@ -665,3 +665,18 @@ fn built_in_profiles_fill_a_plate_without_voids() {
         assert!(worst < 3.0, "{name}: {worst:.1} % of a layer stays empty");
     }
 }
+
+#[test]
+fn what_is_usual_covers_every_built_in_profile_but_no_slip() {
+    let wrong = |profile: &Profile| {
+        let limits = profile.limits().into_iter();
+        let wrong = limits.filter(|l| profile.usual(l.key).is_some_and(|(low, high)| !(low..=high).contains(&l.value)));
+        wrong.map(|limit| limit.key).collect::<Vec<_>>()
+    };
+    for (name, text) in BUILT_IN {
+        assert_eq!(wrong(&Profile::parse(text).unwrap()), [""; 0], "{name}");
+    }
+    let mut slip = Profile::built_in(KUKA).unwrap();
+    slip.process.wire_feed_speed = 99.0;
+    assert_eq!(wrong(&slip), ["process.wire_feed_speed"]);
+}

@@ -4,6 +4,8 @@ use crate::common;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use beadwright::check;
+use beadwright::finding::{Finding, Severity};
 use beadwright::layer::Layer;
 use beadwright::model::RepairReport;
 use beadwright::pass::{Along, Pass, PassKind, Segment};
@@ -14,6 +16,7 @@ use beadwright::profile::Profile;
 use beadwright::report::{Report, encode, svg};
 use beadwright::warning::{Warning, WarningKind};
 use common::profile;
+use glam::DVec3;
 use std::io::Read;
 
 fn planned(part: &str) -> (Plan, Profile) {
@@ -231,6 +234,39 @@ fn a_warning_leads_to_its_place_and_words_are_explained() {
         let ids = html.split(" id=\"").skip(1).map(|rest| rest.split('"').next().unwrap());
         ids.collect::<std::collections::BTreeSet<_>>().len()
     });
+}
+
+#[test]
+fn every_finding_is_listed_the_serious_first_with_a_link_to_its_place() {
+    let (plan, profile) = planned("cross");
+    let found = |kind, severity, pass: usize| {
+        let place = Some(DVec3::new(pass as f64, 2.0, 3.0));
+        let text = format!("{kind} of pass {pass}.");
+        Finding { layer: Some(1), pass: Some(pass), place, ..Finding::new(kind, severity, text) }
+    };
+    let mut found: Vec<Finding> = (0..30).map(|pass| found("bead-width", Severity::Doubt, pass)).collect();
+    let void = Finding::new("void", Severity::Doubt, "void somewhere.".to_owned());
+    found.push(Finding { layer: Some(4), ..void });
+    found.push(Finding::new("points", Severity::Serious, "serious one.".to_owned()));
+    let mut report = Report::new(&plan.header, &profile);
+    plan.layers.iter().for_each(|layer| report.layer(layer, None));
+    let all = check::all_findings(&plan.summary, &[], &found);
+    let html = report.finish(&plan.summary, &RepairReport::default(), &[], &all);
+    for pass in 0..30 {
+        let link = format!(
+            "bead-width of pass {pass}.<button data-layer=\"1\" data-x=\"{pass}.00\" data-y=\"2.00\" data-pass=\"{pass}\">Show on layer 2, pass {}</button>",
+            pass + 1
+        );
+        assert!(html.contains(&link), "{link}");
+    }
+    assert!(
+        html.contains("<button data-layer=\"4\">Show on layer 5</button>"),
+        "a finding without a place has its layer"
+    );
+    assert!(html.contains("<summary>And 29 more</summary>"));
+    let list = html.split_once("<ul class=\"warnings\">").unwrap().1;
+    assert!(list.trim_start().starts_with("<li class=\"serious\">"), "the serious one is not first");
+    assert!(html.contains(">1 serious finding</a>"));
 }
 
 /// The cell beside a word.

@@ -4,11 +4,16 @@
 
 use crate::common;
 
+use beadwright::compare;
+use beadwright::example;
+use beadwright::fill::StrategyName;
+use beadwright::finding::{Finding, Severity};
 use beadwright::model::RepairReport;
 use beadwright::pass::Along;
-use beadwright::plan::Plan;
+use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
 use beadwright::report::Report;
+use beadwright::task::Task;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -45,17 +50,25 @@ fn page(plan: &Plan, profile: &Profile) -> String {
 
 /// What a script (the body of an asynchronous function) gives in the page, as JSON; faults of the page fail the test.
 fn ask(html: &str, script: &str) -> Option<serde_json::Value> {
+    let after = format!(
+        "<script>(async () => {{
+           const rest = ms => new Promise(done => setTimeout(done, ms));
+           while (!shown.layer || (space.scene && !solid.dataset.ready)) await rest(20);
+           {script}
+         }})()"
+    );
+    answer(html, &after)
+}
+
+/// What the promise at the end of a script, whose element is still open, gives in the page.
+fn answer(html: &str, script: &str) -> Option<serde_json::Value> {
     let program = chromium()?;
     // Every test has a folder of its own, as each runs in its own thread.
     let name = std::thread::current().name().unwrap_or("page").replace(':', "-");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("report-{name}"));
     std::fs::create_dir_all(&folder).unwrap();
     let after = format!(
-        "<script>(async () => {{
-           const rest = ms => new Promise(done => setTimeout(done, ms));
-           while (!shown.layer || (space.scene && !solid.dataset.ready)) await rest(20);
-           {script}
-         }})().catch(error => {{ faults.push(String(error)); return null; }})
+        "{script}.catch(error => {{ faults.push(String(error)); return null; }})
            .then(value => {{ document.body.dataset.answer = JSON.stringify({{ value, faults }}); }});
          </script></body>"
     );
@@ -180,4 +193,79 @@ fn what_hangs_over_the_layer_below_is_pink() {
         return seen;";
     let Some(answer) = ask(&page(&plan, &profile), script) else { return };
     assert_eq!(answer, serde_json::json!([[false, true], [false, false]]));
+}
+
+#[test]
+fn a_finding_shows_its_layer_its_place_and_its_pass() {
+    let profile = common::profile("cmt-al2319-kuka");
+    let plan = common::planned("cross", &profile);
+    let mut report = Report::new(&plan.header, &profile);
+    plan.layers.iter().for_each(|layer| report.layer(layer, None));
+    let finding = |layer, pass, place| Finding {
+        layer: Some(layer),
+        pass,
+        place,
+        ..Finding::new("void", Severity::Doubt, format!("Layer {layer}."))
+    };
+    let findings = [finding(3, Some(0), Some(DVec3::new(5.5, -2.25, 8.0))), finding(6, None, None)];
+    let html = report.finish(&plan.summary, &RepairReport::default(), &[], &findings);
+    let script = "
+        const seen = [];
+        for (const button of document.querySelectorAll('#warnings [data-layer]')) {
+          button.click();
+          await rest(200);
+          const { index, picked, mark } = shown;
+          seen.push({ index, pass: picked?.pass, mark: mark && [mark.x, mark.y], whole: view.fitted });
+        }
+        return seen;";
+    let Some(answer) = ask(&html, script) else { return };
+    assert_eq!(answer[0], serde_json::json!({ "index": 3, "pass": 0, "mark": [5.5, -2.25], "whole": false }));
+    assert_eq!((&answer[1]["index"], &answer[1]["whole"]), (&6.into(), &true.into()));
+    assert!(answer[1]["mark"].is_null());
+}
+
+/// What a script gives of a page (`page`, its document) that is as wide as a phone.
+fn on_a_phone(html: &str, script: &str) -> Option<serde_json::Value> {
+    let inner = html.replace('&', "&amp;").replace('"', "&quot;");
+    let outer = format!(
+        "<html><head></head><body><iframe id=\"phone\" width=390 height=800 srcdoc=\"{inner}\"></iframe></body></html>"
+    );
+    let after = format!(
+        "<script>new Promise(done => {{
+           const phone = document.getElementById('phone');
+           phone.onload = () => setTimeout(() => {{
+             const page = phone.contentDocument, width = page.documentElement.clientWidth;
+             const wide = [...page.querySelectorAll('svg.plot, canvas')].filter(node => node.getBoundingClientRect().right > width);
+             done((() => {{ {script} }})());
+           }}, 500);
+         }})"
+    );
+    answer(&outer, &after)
+}
+
+#[test]
+fn on_a_phone_charts_scale_and_the_first_column_stays() {
+    let profile = common::profile("cmt-al2319-kuka");
+    let (mesh, settings) = (example::find("cross").unwrap().mesh(), plan::deposit_settings(&profile));
+    let entry = |name| compare::strategy(&mesh, &profile, name, settings, &None, &Task::new()).unwrap();
+    let html = compare::page("cross", "", &[StrategyName::Loop, StrategyName::Zigzag].map(entry)).html();
+    let script = "
+        const card = page.querySelector('.card.wide'), cell = card.querySelector('td');
+        const before = cell.getBoundingClientRect().left;
+        card.scrollLeft = 300;
+        const letters = page.querySelector('svg.plot text'), shrunk = page.querySelector('svg.plot').getBoundingClientRect().width / 720;
+        return {
+          moved: cell.getBoundingClientRect().left - before, scrolled: card.scrollLeft, wide: wide.length,
+          plots: page.querySelectorAll('svg.plot').length, maps: page.querySelectorAll('.maps canvas').length,
+          letters: parseFloat(getComputedStyle(letters).fontSize) * shrunk, page: page.documentElement.scrollWidth - width,
+        };";
+    let Some(answer) = on_a_phone(&html, script) else { return };
+    assert!(answer["scrolled"].as_f64().unwrap() > 100.0 && answer["moved"].as_f64().unwrap().abs() < 20.0, "{answer}");
+    assert!(answer["plots"] == 2 && answer["maps"].as_u64() >= Some(2) && answer["wide"] == 0, "{answer}");
+    assert!(answer["letters"].as_f64().unwrap() > 7.0 && answer["page"] == 0, "{answer}");
+
+    let plan = common::planned("cross", &profile);
+    let script = "return { plots: page.querySelectorAll('.plots svg').length, wide: wide.length, page: page.documentElement.scrollWidth - width };";
+    let Some(answer) = on_a_phone(&page(&plan, &profile), script) else { return };
+    assert!(answer["wide"] == 0 && answer["page"] == 0, "{answer}");
 }

@@ -166,7 +166,7 @@ pub enum ImportError {
         reason: String,
     },
     /// The file ends too early, or holds more than it says.
-    #[error("the STL file is damaged: {reason}. Copy or export it again.")]
+    #[error("the file is damaged: {reason}. Copy or export it again.")]
     Damaged {
         /// Where it ends and where it should.
         reason: String,

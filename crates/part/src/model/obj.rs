@@ -21,7 +21,9 @@ fn looks_obj(bytes: &[u8]) -> bool {
 
 fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     let (mut vertices, mut facets, mut lines) = (Vec::<[f32; 3]>::new(), Vec::new(), Vec::<u32>::new());
-    let (mut corners, mut edges) = (Vec::new(), 0);
+    let mut edges = 0;
+    // Faces that refer to vertices that are not there: how many, and the line of the first.
+    let mut broken_faces: Option<(usize, u32)> = None;
     for (number, line) in (1..).zip(bytes.split(|&b| b == b'\n')) {
         if number % 100_000 == 0 {
             task.check()?;
@@ -35,11 +37,11 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
                 vertices.push(vertex.ok_or_else(|| broken("three numbers are expected after v"))?);
             }
             Some(b"f") => {
-                corners.clear();
-                for word in words {
-                    let index = vertex(word, vertices.len());
-                    corners.push(index.ok_or_else(|| broken("a corner refers to a vertex that is not defined yet"))?);
-                }
+                let corners: Option<Vec<u32>> = words.map(|word| vertex(word, vertices.len())).collect();
+                let Some(corners) = corners else {
+                    broken_faces = broken_faces.map(|(count, line)| (count + 1, line)).or(Some((1, number)));
+                    continue;
+                };
                 if corners.len() < 3 {
                     // Some programs write edges as two-cornered faces.
                     edges += 1;
@@ -54,9 +56,17 @@ fn read(bytes: &[u8], task: &Task) -> Result<Import, ImportError> {
     }
     let count = facets.len();
     let place = |i: usize| format!("line {}", lines.get(i).copied().unwrap_or_default());
+    let damage = broken_faces.map(|(count, line)| {
+        let faces = if count == 1 { "1 face refers" } else { &format!("{count} faces refer") };
+        format!("{faces} to vertices that are not defined before them (first: line {line})")
+    });
+    if let (0, Some(reason)) = (count, &damage) {
+        return Err(ImportError::Broken { format: "OBJ", reason: reason.clone() });
+    }
     let mut import = formats::of_facets(facets.into_iter(), count, "OBJ", place, task)?;
     import.repair.degenerate += edges;
     import.repair.triangles_read += edges;
+    import.repair.damage = damage;
     Ok(import)
 }
 

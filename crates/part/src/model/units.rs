@@ -63,6 +63,13 @@ pub struct UnitsUnclear {
     pub bead_width: f64,
 }
 
+impl UnitsUnclear {
+    /// The part's size by a unit, mm, as text.
+    pub fn size_in(&self, units: Units) -> String {
+        size_text(self.size, units.in_mm())
+    }
+}
+
 fn size_text(size: DVec3, factor: f64) -> String {
     let s = size * factor;
     let digits = if s.max_element() < 10.0 { 2 } else { 0 };

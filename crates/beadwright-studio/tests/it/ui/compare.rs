@@ -59,6 +59,8 @@ fn a_finding_leads_to_its_bead() {
     let view = harness.state_mut().view();
     assert_eq!((view.mode, view.last), (Mode::Layer, layer));
     assert_eq!(view.chosen.map(|(l, p, _)| (l, p)), Some((layer, pass)));
+    let pin = view.pin.as_ref().expect("the place is not marked");
+    assert_eq!((pin.layer, Some(pin.at)), (layer, finding.place));
     click(&mut harness, "Totals");
     let length = harness.state().plan().layers[layer].passes[pass].length();
     assert!(sees(&harness, &format!("{length:.2} mm")));

@@ -20,8 +20,13 @@ const PATIENCE: Duration = Duration::from_secs(120);
 pub(crate) type Window = Harness<'static, Studio>;
 
 pub(crate) fn studio(store: &Path) -> Window {
+    studio_of_size(store, [1280.0, 800.0])
+}
+
+/// The program in a window of this many points.
+pub(crate) fn studio_of_size(store: &Path, size: [f32; 2]) -> Window {
     let store = Store::at(store.to_owned());
-    let builder = Harness::builder().with_size([1280.0, 800.0]).with_max_steps(64);
+    let builder = Harness::builder().with_size(size).with_max_steps(64);
     let builder = if has_adapter() { builder.wgpu() } else { builder };
     let mut harness = builder.build_eframe(move |cc| Studio::new(cc, store));
     harness.run_steps(2);
