@@ -80,7 +80,9 @@ fn run(
                 Event::Part(..) => part = now(),
                 Event::Preview(..) => first = now(),
                 Event::Planned(_) => all = now(),
-                Event::Failed(Failure::Sentence(text) | Failure::Units(text) | Failure::Height(text)) => {
+                Event::Failed(
+                    Failure::Sentence(text) | Failure::Units(text, _) | Failure::Damaged(text) | Failure::Height(text),
+                ) => {
                     return Err(text.as_str().into());
                 }
                 _ => {}

@@ -87,7 +87,7 @@ fn listed(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, group: &[&Finding]
 }
 
 fn one(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, finding: &Finding) {
-    let text = sentence(finding);
+    let text = sentence(&finding.text);
     if finding.layer.is_none() {
         explained(known, ui.label(&text), finding.kind, &text);
         return;
@@ -121,9 +121,9 @@ fn layers(known: Known<'_>, first: &Finding, last: &Finding) -> String {
     }
 }
 
-/// The finding as a sentence, starting with a capital letter.
-fn sentence(finding: &Finding) -> String {
-    let mut letters = finding.text.chars();
+/// A sentence, starting with a capital letter.
+pub(super) fn sentence(text: &str) -> String {
+    let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 

@@ -181,7 +181,7 @@ fn verdict(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
         let text = RichText::new(known.t("may-not-be-written")).color(error).strong();
         ui.label(text).on_hover_text(own.forbidden().join("\n\n"));
     } else if serious > 0 {
-        ui.colored_label(error, format!("{}: {serious}", known.t("serious")));
+        ui.colored_label(error, format!("{}: {serious}", known.t("serious-count")));
     }
     let counts = own.is_of_last_request() && found > 0;
     if counts && ui.link(format!("{}: {found}", known.t("findings"))).clicked() {

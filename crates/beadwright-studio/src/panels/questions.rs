@@ -1,5 +1,6 @@
 //! Questions that must be answered before work continues, and the list of keys.
 
+use super::findings::sentence;
 use crate::actions::{Action, ENTRIES};
 use crate::known::{Known, Queue, View};
 use crate::planner::Failure;
@@ -82,7 +83,7 @@ fn doubted(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &Ui) {
     }
     window(known.t("doubted-title")).show(ui.ctx(), |ui| {
         let serious: Vec<&Finding> = known.plans.own.serious().collect();
-        serious.iter().take(SHOWN).for_each(|finding| drop(ui.label(finding.sentence())));
+        serious.iter().take(SHOWN).for_each(|finding| drop(ui.label(sentence(&finding.sentence()))));
         if serious.len() > SHOWN {
             ui.weak(format!("… {}", serious.len() - SHOWN));
         }

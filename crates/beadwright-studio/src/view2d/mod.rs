@@ -14,6 +14,7 @@ pub use heat::{heat, height};
 pub use steps::Named;
 
 use crate::steps::Steps;
+use crate::view3d::ring;
 use beadwright::deposit::Judgement;
 use beadwright::layer::Layer;
 use beadwright::pass::{Pass, Segment};
@@ -240,13 +241,6 @@ impl View2d {
             pen.painter.circle_stroke(pen.at(void.place), radius, Stroke::new(1.5, VOID));
         }
     }
-}
-
-/// Marks a place with a ring.
-pub fn ring(painter: &egui::Painter, at: Pos2, colour: Color32) {
-    const RADIUS: f32 = 16.0;
-    painter.circle_stroke(at, RADIUS, Stroke::new(5.0, Color32::from_black_alpha(140)));
-    painter.circle_stroke(at, RADIUS, Stroke::new(3.0, colour));
 }
 
 impl Drawing<'_> {

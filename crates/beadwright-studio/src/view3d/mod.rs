@@ -16,7 +16,7 @@
 //! | `gpu` | buffers, shaders, pictures |
 //! | `widget` | the pointer turns and picks; frames are kept |
 //! | `gizmo` | handles that move and turn the part |
-//! | `overlay` | axes and scale bar |
+//! | `overlay` | axes, scale bar, the mark of a place |
 //! | `headless` | a renderer without a window |
 
 mod beads;
@@ -41,6 +41,7 @@ pub use face::face;
 pub use gizmo::{Gizmo, Grip, Handle, Moved};
 pub use headless::headless;
 pub use lie::Stance;
+pub use overlay::ring;
 pub use pick::{Pick, pick};
 pub use scanned::Scanned;
 pub use scene::{Position, Scene};

@@ -1,4 +1,4 @@
-//! What is painted over the picture: the axes and a scale bar.
+//! What is painted over the picture: the axes, a scale bar and the mark of a place.
 
 use super::camera::Camera;
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
@@ -26,6 +26,13 @@ pub(super) fn paint(painter: &Painter, rect: Rect, camera: &Camera, caption: &st
         painter.text(beside, Align2::LEFT_BOTTOM, caption, FontId::proportional(12.0), ink);
     }
     scale_bar(painter, rect, camera, ink);
+}
+
+/// Marks a place with a ring.
+pub fn ring(painter: &Painter, at: Pos2, colour: Color32) {
+    const RADIUS: f32 = 16.0;
+    painter.circle_stroke(at, RADIUS, Stroke::new(5.0, Color32::from_black_alpha(140)));
+    painter.circle_stroke(at, RADIUS, Stroke::new(3.0, colour));
 }
 
 fn axes(painter: &Painter, origin: Pos2, camera: &Camera, ink: Color32) {

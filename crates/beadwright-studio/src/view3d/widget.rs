@@ -175,7 +175,7 @@ impl View3d {
         overlay::paint(&painter, rect, &self.camera, &self.caption, style.dark);
         if let Some(at) = self.pin.and_then(|pin| self.camera.project(pin, size)) {
             let at = rect.min + egui::vec2(at.x as f32, at.y as f32);
-            crate::view2d::ring(&painter, at, ui.visuals().warn_fg_color);
+            overlay::ring(&painter, at, ui.visuals().warn_fg_color);
         }
         let at = |pos: egui::Pos2| DVec2::new(f64::from(pos.x - rect.left()), f64::from(pos.y - rect.top()));
         if shown.clicked {

@@ -50,7 +50,7 @@ fn serious_findings_ask_before_a_program_is_exported() {
     for (answer, written) in [("Cancel", false), ("Show findings", false), ("Export all the same", true)] {
         harness.state_mut().act(Action::Export(Export::All));
         harness.run_steps(3);
-        assert!(sees(&harness, QUESTION) && !out.exists());
+        assert!(sees(&harness, QUESTION) && sees(&harness, "Serious: 1") && !out.exists());
         click(&mut harness, answer);
         assert!(!sees(&harness, QUESTION));
         assert_eq!(out.exists(), written, "{answer}");
