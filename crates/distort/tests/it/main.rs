@@ -1,0 +1,4 @@
+//! All tests of the crate as one program: each file is a module, `cargo test -p bead-distort --test it FILE::` runs one.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
+
+mod closed_forms;
