@@ -124,6 +124,9 @@ impl Body {
             let number = number(node)?;
             (0..3).for_each(|d| load[number][d] += force[d]);
         }
+        for &(node, _) in &self.springs {
+            number(node)?;
+        }
         let total = vector::dot(&load, &load).sqrt();
         let mut moved = vector::zeros(load.len());
         let mut residual = load.clone();

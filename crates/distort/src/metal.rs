@@ -48,35 +48,67 @@ pub(crate) struct Piece {
     pub(crate) up: DVec3,
 }
 
-/// The pieces of a bead, no longer than samples lie apart.
-pub(crate) fn pieces<'a>(bead: &'a Bead, grid: &Grid) -> impl Iterator<Item = Piece> + 'a {
+/// The middles and lengths, as fractions, of pieces of a line that cross no border between voxels and are no longer than
+/// samples lie apart. So lines along the lattice are shared out exactly.
+fn cuts(grid: &Grid, from: DVec3, way: DVec3) -> Vec<(f64, f64)> {
+    /// Pieces shorter than this fraction are rounding.
+    const NOTHING: f64 = 1e-9;
+    let (begin, change) = ((from - grid.low) / grid.size, way / grid.size);
+    let mut ends = vec![1.0];
+    for d in (0..3).filter(|&d| change[d].abs() > NOTHING) {
+        let (low, high) = (begin[d].min(begin[d] + change[d]), begin[d].max(begin[d] + change[d]));
+        let borders = (low.ceil() as i64)..=(high.floor() as i64);
+        ends.extend(borders.map(|border| (border as f64 - begin[d]) / change[d]));
+    }
+    ends.sort_by(f64::total_cmp);
     let spacing = SPACING * grid.size.min_element();
+    let (mut pieces, mut last, length) = (Vec::with_capacity(ends.len()), 0.0, way.length());
+    for end in ends {
+        if end - last > NOTHING && (end >= 1.0 || 1.0 - end > NOTHING) {
+            let count = ((end - last) * length / spacing - NOTHING).ceil().max(1.0);
+            let part = (end - last) / count;
+            pieces.extend((0..count as usize).map(|i| (last + part * (i as f64 + 0.5), part)));
+            last = end;
+        }
+    }
+    pieces
+}
+
+/// The pieces of a bead.
+pub(crate) fn pieces<'a>(bead: &'a Bead, grid: &'a Grid) -> impl Iterator<Item = Piece> + 'a {
     bead.points.windows(2).flat_map(move |pair| {
         let (from, way) = (pair[0], pair[1] - pair[0]);
-        let count = (way.length() / spacing).ceil() as usize;
         let along = way.normalize_or_zero();
         let across = bead.up.cross(along).try_normalize().unwrap_or_else(|| along.any_orthonormal_vector());
-        let (up, length) = (along.cross(across), way.length() / count.max(1) as f64);
-        (0..count).map(move |i| {
-            let middle = from + way * ((i as f64 + 0.5) / count as f64);
-            Piece { middle, length, along, across, up }
-        })
+        let (up, length) = (along.cross(across), way.length());
+        let piece = move |(middle, part): (f64, f64)| Piece {
+            middle: from + middle * way,
+            length: part * length,
+            along,
+            across,
+            up,
+        };
+        cuts(grid, from, way).into_iter().map(piece)
     })
 }
 
 impl Piece {
     /// Samples of a rectangle of the section, `width` wide and from one depth below the top to another, mm.
-    pub(crate) fn samples(&self, grid: &Grid, width: f64, depths: Range<f64>) -> impl Iterator<Item = Sample> {
-        let spacing = SPACING * grid.size.min_element();
+    pub(crate) fn samples<'a>(
+        &self,
+        grid: &'a Grid,
+        width: f64,
+        depths: Range<f64>,
+    ) -> impl Iterator<Item = Sample> + 'a {
         let depth = depths.end - depths.start;
-        let (wide, deep) = ((width / spacing).ceil().max(1.0), (depth / spacing).ceil().max(1.0));
-        let (middle, across, up) = (self.middle, self.across, self.up);
-        let area = width * depth / (wide * deep);
-        (0..(wide * deep) as usize).map(move |i| {
-            let (column, row) = (i % wide as usize, i / wide as usize);
-            let side = width * ((column as f64 + 0.5) / wide - 0.5);
-            let down = depths.start + depth * (row as f64 + 0.5) / deep;
-            Sample { at: middle + side * across - down * up, area }
+        let corner = self.middle - 0.5 * width * self.across - depths.start * self.up;
+        let (beside, down) = (width * self.across, -depth * self.up);
+        // Cut along its middle, so that voxels above each other are shared out alike.
+        cuts(grid, corner + 0.5 * down, beside).into_iter().flat_map(move |(side, wide)| {
+            let top = corner + side * beside;
+            let sample =
+                move |(row, deep): (f64, f64)| Sample { at: top + row * down, area: wide * deep * width * depth };
+            cuts(grid, top, down).into_iter().map(sample)
         })
     }
 }

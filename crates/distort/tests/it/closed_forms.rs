@@ -63,7 +63,7 @@ fn cantilever() {
             solved.iterations
         );
     }
-    assert!(errors[0] < 0.01 && errors[2] < 0.002, "{errors:?}");
+    assert!(errors[0] < 0.005 && errors[1] < 0.6 * errors[0] && errors[2] < 0.4 * errors[1], "{errors:?}");
 }
 
 /// A body that is warmer everywhere grows and has no stress.
@@ -89,42 +89,42 @@ fn free_expansion() {
 }
 
 /// Timoshenko 1925: a strip of two metals, warmer by ΔT.
-#[test]
-fn bimetal_strip() {
-    let (length, width, lower, upper) = (160.0, 4.0, 4.0, 4.0);
-    let (young_ratio, expansion) = (0.5, 1e-3);
-    for layers in [1usize, 2, 4] {
-        let mut body = full([20 * layers, layers, 2 * layers], DVec3::new(length, width, lower + upper), PLAIN);
-        on_three_points(&mut body);
-        for voxel in 0..body.grid().voxels() {
-            if body.grid().voxel_at(voxel)[2] < layers {
-                body.strain(voxel, [expansion; 6].map(|e| e)).unwrap();
-                body.strain(voxel, [expansion, expansion, expansion, 0.0, 0.0, 0.0]).unwrap();
-            } else {
-                body.fill(voxel, young_ratio).unwrap();
-            }
+fn bimetal(elastic: Elastic, layers: usize) -> f64 {
+    let (lower, upper, expansion, young_ratio) = (4.0, 4.0, 1e-3, 0.5);
+    let mut body = full([20 * layers, layers, 2 * layers], DVec3::new(160.0, 4.0, lower + upper), elastic);
+    on_three_points(&mut body);
+    for voxel in 0..body.grid().voxels() {
+        if body.grid().voxel_at(voxel)[2] < layers {
+            body.strain(voxel, [expansion, expansion, expansion, 0.0, 0.0, 0.0]).unwrap();
+        } else {
+            body.fill(voxel, young_ratio).unwrap();
         }
-        let solved = body.solve(1e-10).unwrap();
-        let (m, n, h) = (lower / upper, 1.0 / young_ratio, lower + upper);
-        let exact = 6.0 * expansion * (1.0 + m).powi(2)
-            / (h * (3.0 * (1.0 + m).powi(2) + (1.0 + m * n) * (m * m + 1.0 / (m * n))));
-        let found = -curvature(&body, &solved);
-        println!(
-            "bimetal: {layers} per metal: {found:.6e}, exact {exact:.6e}, error {:.3} %, {} iterations",
-            100.0 * (found / exact - 1.0),
-            solved.iterations
-        );
     }
+    let solved = body.solve(1e-11).unwrap();
+    let (m, n, h) = (lower / upper, 1.0 / young_ratio, lower + upper);
+    let stiffness = 3.0 * (1.0 + m).powi(2) + (1.0 + m * n) * (m * m + 1.0 / (m * n));
+    let exact = 6.0 * expansion * (1.0 + m).powi(2) / (h * stiffness);
+    let error = curvature(&body, &solved).abs() / exact - 1.0;
+    println!("bimetal strip, ν {}: {layers} voxels per metal, error {:.5} %", elastic.poisson, 100.0 * error);
+    error.abs()
 }
 
-/// Iterations on plates and blocks.
+#[test]
+fn bimetal_strip() {
+    // One voxel per metal is enough, since each bends exactly.
+    assert!([1, 2, 4].map(|layers| bimetal(PLAIN, layers)).into_iter().all(|error| error < 1e-5));
+    // With contraction across, the strip also bends across near the seam, which the formula leaves out.
+    assert!([1, 2, 4].map(|layers| bimetal(STEEL, layers)).into_iter().all(|error| error < 0.02));
+}
+
+/// Thin plates, blocks and walls take about as many iterations.
 #[test]
 fn iterations() {
     for (counts, sides) in [
         ([100, 100, 3], [300.0, 300.0, 9.0]),
-        ([100, 100, 4], [300.0, 300.0, 12.0]),
-        ([40, 40, 40], [120.0; 3]),
-        ([100, 2, 60], [300., 6., 180.]),
+        ([50, 50, 50], [150.0, 150.0, 150.0]),
+        ([100, 2, 60], [300.0, 6.0, 180.0]),
+        ([30, 30, 3], [90.0, 90.0, 9.0]),
     ] {
         let mut body = full(counts, DVec3::from_array(sides), STEEL);
         on_three_points(&mut body);
@@ -132,15 +132,10 @@ fn iterations() {
             let voxel = body.grid().voxel([i, counts[1] / 2, counts[2] - 1]);
             body.strain(voxel, [-0.002, -0.001, 0.0, 0.0, 0.0, 0.0]).unwrap();
         }
-        for tolerance in [1e-3, 1e-9] {
-            let t = std::time::Instant::now();
-            let solved = body.solve(tolerance).unwrap();
-            println!(
-                "{counts:?} {tolerance:e}: {} iterations {:.2} s, residual {:.1e}",
-                solved.iterations,
-                t.elapsed().as_secs_f64(),
-                solved.residual
-            );
-        }
+        let solved = body.solve(1e-9).unwrap();
+        println!("{counts:?}: {} iterations, residual {:.1e}", solved.iterations, solved.residual);
+        assert!(solved.iterations < 30 && solved.residual < 2e-9);
+        let load: DVec3 = solved.reactions.iter().sum();
+        assert!(load.length() < 1e-4 && solved.spring_energy < 1e-8 * solved.energy, "three points carry nothing");
     }
 }
