@@ -27,16 +27,21 @@ fn block(beside: usize, layers: usize) -> (Plate, Vec<Bead>) {
 
 fn main() {
     let sizes = [
-        (50, 50, 4.0, 60),
-        (100, 50, 4.0, 60),
-        (50, 50, 2.5, 60),
-        (100, 100, 4.0, 60),
-        (100, 50, 2.5, 60),
-        (100, 100, 2.5, 60),
-        (100, 100, 2.5, 120),
+        (50, 50, 3.0, 100),
+        (100, 50, 3.0, 100),
+        (100, 100, 4.0, 100),
+        (100, 100, 3.0, 50),
+        (100, 100, 3.0, 100),
+        (100, 100, 3.0, 200),
+        (100, 100, 2.0, 100),
     ];
     println!("{:>7} {:>8} {:>6} {:>11} {:>8} {:>7}", "beads", "voxels", "steps", "iterations", "lift mm", "s");
+    // `-- 100 100` only those of a size.
+    let wanted: Vec<usize> = std::env::args().filter_map(|word| word.parse().ok()).collect();
     for (beside, layers, voxel, most_steps) in sizes {
+        if wanted.len() == 2 && wanted != [beside, layers] {
+            continue;
+        }
         let (plate, beads) = block(beside, layers);
         let clamps = plate.clamped_at_corners(10.0, Clamp::FIRM);
         let settings = Settings { voxel, voxel_height: 2.0, most_steps, ..Settings::steel() };

@@ -1,6 +1,6 @@
 //! The part grows step by step, and each step shrinks.
 
-use crate::element::Element;
+use crate::element::{Element, times};
 use crate::error::DistortError;
 use crate::figures::{Balance, Distortion, Shape, Step};
 use crate::grid::Grid;
@@ -173,10 +173,14 @@ impl<'a> Growing<'a> {
     }
 
     /// Lays and shrinks the beads of a step.
+    ///
+    /// Beads of a group that are laid one by one meet, on the mean, the fraction (n + 1) / 2n of the group's metal. So that
+    /// is the stiffness of new metal while the group shrinks; afterwards it has all of it, with the same stress.
     fn weld(&mut self, step: usize, beads: &[Bead]) -> Result<Step, DistortError> {
-        let mut changed = self.lay(step as u32);
+        let new = self.lay(step as u32);
         let range = self.metal.steps[step - 1].clone();
         let of_step: Vec<&Bead> = self.metal.order[range].iter().map(|&bead| &beads[bead]).collect();
+        let mut changed = new.clone();
         for bead in &of_step {
             changed.extend(shrink(bead, self.metal, self.settings, &mut self.wanted));
         }
@@ -186,15 +190,37 @@ impl<'a> Growing<'a> {
         let (carried, from) = (self.residual.clone(), self.moved.clone());
         let before: Vec<[f64; 6]> = changed.iter().map(|&voxel| self.stress(voxel)).collect();
         let added: Vec<[f64; 6]> = changed.iter().map(|&voxel| self.shrink(voxel)).collect();
+        let part = (of_step.len() + 1) as f64 / (2 * of_step.len()) as f64;
+        new.iter().for_each(|&voxel| self.factors[voxel] = part * self.metal.factors[voxel]);
         self.balance(self.settings.tolerance)?;
         for ((&voxel, before), added) in changed.iter().zip(before).zip(added) {
-            let after = self.stress(voxel);
-            let work: f64 = (0..6).map(|i| 0.5 * (before[i] + after[i]) * added[i]).sum();
-            self.work -= work * self.element.volume();
+            self.work += if self.metal.born[voxel] == step as u32 {
+                self.complete(voxel, part)
+            } else {
+                let after = self.stress(voxel);
+                let work: f64 = (0..6).map(|i| 0.5 * (before[i] + after[i]) * added[i]).sum();
+                -work * self.element.volume()
+            };
         }
         self.work -= self.work_out_of_balance(&carried, &from);
         let end = of_step.iter().map(|bead| bead.end).fold(0.0, f64::max);
         Ok(Step { time: end, beads: of_step.len(), lift: self.shape().lift })
+    }
+
+    /// Gives new metal, which had a part of its stiffness while it shrank, all of it, with the same forces; returns its
+    /// energy less the work of these forces.
+    fn complete(&mut self, voxel: usize, part: f64) -> f64 {
+        let moved = self.since_laid(voxel);
+        self.factors[voxel] = self.metal.factors[voxel];
+        let begun = &mut self.begun[self.order[voxel] as usize];
+        for (begun, moved) in begun.iter_mut().zip(&moved) {
+            (0..3).for_each(|d| begun[d] += (1.0 - part) * moved[d]);
+        }
+        let (after, strain) = (self.since_laid(voxel), &self.strains[voxel]);
+        let (held, free) = (times(&self.element.stiffness, &after), self.element.forces(strain));
+        let forces = held.iter().flatten().zip(free.iter().flatten()).map(|(held, free)| held - free);
+        let work: f64 = forces.zip(moved.iter().flatten()).map(|(force, moved)| 0.5 * force * moved).sum();
+        self.factors[voxel] * (self.element.energy(&after, strain) - work)
     }
 
     /// Brings a voxel's strain up to what it shall have; returns what was added.
@@ -268,7 +294,7 @@ impl<'a> Growing<'a> {
     fn out_of_balance(&self) -> Vec<[f64; 3]> {
         let mut sum = self.load.clone();
         for voxel in (0..self.factors.len()).filter(|&voxel| self.factors[voxel] > 0.0) {
-            let forces = crate::element::times(&self.element.stiffness, &self.since_laid(voxel));
+            let forces = times(&self.element.stiffness, &self.since_laid(voxel));
             for (node, force) in self.metal.grid.corners(voxel).into_iter().zip(forces) {
                 (0..3).for_each(|d| sum[node][d] -= self.factors[voxel] * force[d]);
             }

@@ -169,7 +169,8 @@ fn condensed(mut full: [[f64; 33]; 33]) -> Matrix {
 /// The pattern `m` of a direction `d` belongs to the kind `m ^ (1 << d)`: mirrored at a plane, a displacement changes its
 /// sign along the normal.
 pub(crate) fn blocks(matrix: &Matrix) -> Blocks<f64> {
-    let wave = |pattern: usize, corner: usize| if (pattern & corner).count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+    let wave =
+        |pattern: usize, corner: usize| if (pattern & corner).count_ones().is_multiple_of(2) { 1.0 } else { -1.0 };
     std::array::from_fn(|kind| {
         std::array::from_fn(|c| {
             std::array::from_fn(|d| {

@@ -137,11 +137,9 @@ fn range_of(starts: &[usize], slabs: std::ops::Range<usize>) -> std::ops::Range<
 fn patterns<T: Real>(values: &mut [[T; LANES]; 8]) {
     for bit in [1, 2, 4] {
         for low in (0..8).filter(|low| low & bit == 0) {
-            for lane in 0..LANES {
-                let (a, b) = (values[low][lane], values[low | bit][lane]);
-                values[low][lane] = a + b;
-                values[low | bit][lane] = a - b;
-            }
+            let (a, b) = (values[low], values[low | bit]);
+            values[low] = std::array::from_fn(|lane| a[lane] + b[lane]);
+            values[low | bit] = std::array::from_fn(|lane| a[lane] - b[lane]);
         }
     }
 }

@@ -47,6 +47,9 @@ struct Level {
     parents: Vec<[u32; 8]>,
 }
 
+/// Weights of a spring at the eight corners of a voxel, and its stiffness.
+type Held = ([f64; 8], [f64; 3]);
+
 /// A preconditioner for the stiffness of voxels.
 #[derive(Debug)]
 pub(crate) struct Multigrid {
@@ -113,9 +116,9 @@ impl Multigrid {
         let below = self.cycle(depth + 1, level.restricted(coarser, self.direct.rows() / 3, &residual));
         let mut change = level.interpolated(&below);
         level.subtract(&change, &mut residual);
-        vector::each2(&mut solution, &change, |s, c| plus(s, c));
+        vector::each2(&mut solution, &change, plus);
         change = level.smoothed(&mut residual, false);
-        vector::each2(&mut solution, &change, |s, c| plus(s, c));
+        vector::each2(&mut solution, &change, plus);
         solution
     }
 }
@@ -142,7 +145,7 @@ impl Level {
             vector::each3(&mut step, residual, &self.inverse, |s, r, i| {
                 (0..3).for_each(|d| s[d] = keep * s[d] + add * i[d] * r[d]);
             });
-            vector::each2(&mut solution, &step, |s, c| plus(s, c));
+            vector::each2(&mut solution, &step, plus);
         }
         if keep_residual {
             self.subtract(&step, residual);
@@ -249,12 +252,7 @@ impl Stage {
     }
 
     /// The matrix of a voxel of the coarser level.
-    fn combined(
-        &self,
-        children: &[Option<usize>; 8],
-        parts: &[Matrix; 8],
-        springs: &[([f64; 8], [f64; 3])],
-    ) -> [[f32; 24]; 24] {
+    fn combined(&self, children: &[Option<usize>; 8], parts: &[Matrix; 8], springs: &[Held]) -> [[f32; 24]; 24] {
         let mut sum = zero();
         for (part, child) in children.iter().enumerate() {
             match child.map(|child| (child, self.kinds[child])) {
@@ -274,7 +272,7 @@ impl Stage {
     }
 
     /// For each voxel of the coarser level that holds springs, their weights at its corners and their stiffness.
-    fn springs_by_parent(&self, springs: &[(u32, [f64; 3])]) -> FxHashMap<usize, Vec<([f64; 8], [f64; 3])>> {
+    fn springs_by_parent(&self, springs: &[(u32, [f64; 3])]) -> FxHashMap<usize, Vec<Held>> {
         let mut found: FxHashMap<usize, Vec<_>> = FxHashMap::default();
         if springs.is_empty() {
             return found;

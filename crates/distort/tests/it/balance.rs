@@ -1,7 +1,7 @@
 //! Forces and energies are in balance, and springs leave no trace when they are gone.
 
 use crate::parts::{built, on_corners, plate, settings, wall};
-use distort::{Balance, Clamp, DVec3, Settings};
+use distort::{Balance, DVec3, Settings};
 
 fn check(name: &str, balance: &Balance) {
     let energy = balance.energy + balance.clamp_energy;
@@ -26,6 +26,8 @@ fn of_a_wall() {
     let bent = on_corners(&wall(9.0, 6, 0.0), &settings());
     check("clamped", &bent.clamped_balance);
     check("released", &bent.released_balance);
+    let bent = on_corners(&wall(9.0, 6, 0.0), &Settings { most_steps: 2, ..settings() });
+    check("released, three layers at a time", &bent.released_balance);
     assert!(bent.clamped_balance.clamp_energy > 0.0 && bent.released_balance.clamp_energy == 0.0);
 }
 
@@ -45,18 +47,17 @@ fn does_not_depend_on_the_tolerance_of_steps() {
 /// Metal that is all there from the beginning forgets the clamps.
 #[test]
 fn one_step_released_is_one_step_free() {
-    let settings = Settings { most_steps: 1, ..settings() };
-    let beads = wall(9.0, 4, 0.0);
+    let (settings, beads) = (settings(), wall(9.0, 1, 0.0));
     let (held, free) = (on_corners(&beads, &settings), built(&plate(), &beads, &[], &settings));
     for (a, b) in held.released.moved.iter().zip(&free.released.moved) {
         assert!(a.distance(*b) < 1e-7 * free.released.lift.range, "{a} {b}");
     }
     assert!(held.clamped.lift.range < held.released.lift.range);
     // Growth on clamps is another matter: later layers are laid on a plate that is held flat.
-    let settings = Settings { most_steps: 4, ..settings };
+    let beads = wall(9.0, 4, 0.0);
     let (held, free) = (on_corners(&beads, &settings), built(&plate(), &beads, &[], &settings));
     println!(
-        "four steps: {:.4} mm clamped and released, {:.4} mm free",
+        "four layers: {:.4} mm clamped and released, {:.4} mm free",
         held.released.lift.range, free.released.lift.range
     );
 }
@@ -77,5 +78,4 @@ fn soft_clamps() {
     // A clamp that holds in z only leaves the plate free to slide, which is no fault.
     let clamps = plate().clamped_at_corners(5.0, DVec3::new(0.0, 0.0, 1e5));
     check("held in z only", &built(&plate(), &beads, &clamps, &settings()).clamped_balance);
-    assert!(Clamp::FIRM.x > 0.0);
 }

@@ -7,5 +7,6 @@ mod closed_forms;
 mod eccentricity;
 mod errors;
 mod parts;
+mod steps;
 mod symmetry;
 mod tendon;
