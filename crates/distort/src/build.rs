@@ -2,7 +2,7 @@
 
 use crate::element::{Element, times};
 use crate::error::DistortError;
-use crate::figures::{Balance, Distortion, Shape, Step};
+use crate::figures::{Balance, Distortion, Lift, Shape, Step};
 use crate::grid::Grid;
 use crate::input::{Bead, Clamp, Plate};
 use crate::metal::Metal;
@@ -81,6 +81,8 @@ struct Growing<'a> {
     residual: Vec<[f64; 3]>,
     /// Forces of all shrinkage so far, N.
     load: Vec<[f64; 3]>,
+    /// Nodes of the plate's lower face.
+    lower: Vec<usize>,
     /// Nodes that have belonged to metal so far.
     there: Vec<bool>,
     /// Stress-free strain that each voxel shall have, without calibration, and the one that it has.
@@ -113,6 +115,7 @@ impl<'a> Growing<'a> {
             moved: vector::zeros(nodes),
             residual: vector::zeros(nodes),
             load: vector::zeros(nodes),
+            lower: lower_face(metal),
             there: vec![false; nodes],
             wanted: vec![[0.0; 6]; voxels],
             strains: vec![[0.0; 6]; voxels],
@@ -138,16 +141,10 @@ impl<'a> Growing<'a> {
     /// Three corners of the plate's lower face held so that it can neither move nor turn, and nothing more.
     fn supports(&self) -> Vec<(usize, [f64; 3])> {
         let (grid, k) = (&self.metal.grid, self.settings.elastic.young * self.metal.grid.size.min_element());
-        let on_plate = |node: &usize| grid.node_at(*node)[2] == self.metal.plate_bottom && self.of_plate(*node);
-        let nodes: Vec<usize> = (0..grid.nodes()).filter(on_plate).collect();
-        let (Some(&first), Some(&last)) = (nodes.first(), nodes.last()) else { return Vec::new() };
+        let (Some(&first), Some(&last)) = (self.lower.first(), self.lower.last()) else { return Vec::new() };
         let ([x0, y0, z], [x1, y1, _]) = (grid.node_at(first), grid.node_at(last));
         let (along, beside) = (grid.node([x1, y0, z]), grid.node([x0, y1, z]));
         vec![(first, [k; 3]), (along, [0.0, k, k]), (beside, [0.0, 0.0, k])]
-    }
-
-    fn of_plate(&self, node: usize) -> bool {
-        touching(&self.metal.grid, node).any(|voxel| self.metal.born[voxel] == 0)
     }
 
     /// Metal of a step appears, free of stress.
@@ -181,9 +178,7 @@ impl<'a> Growing<'a> {
         let range = self.metal.steps[step - 1].clone();
         let of_step: Vec<&Bead> = self.metal.order[range].iter().map(|&bead| &beads[bead]).collect();
         let mut changed = new.clone();
-        for bead in &of_step {
-            changed.extend(shrink(bead, self.metal, self.settings, &mut self.wanted));
-        }
+        changed.extend(shrink(&of_step, self.metal, self.settings, &mut self.wanted));
         changed.sort_unstable();
         changed.dedup();
         changed.retain(|&voxel| self.factors[voxel] > 0.0);
@@ -204,7 +199,7 @@ impl<'a> Growing<'a> {
         }
         self.work -= self.work_out_of_balance(&carried, &from);
         let end = of_step.iter().map(|bead| bead.end).fold(0.0, f64::max);
-        Ok(Step { time: end, beads: of_step.len(), lift: self.shape().lift })
+        Ok(Step { time: end, beads: of_step.len(), lift: Lift::of(&self.metal.grid, &self.moved, &self.lower) })
     }
 
     /// Gives new metal, which had a part of its stiffness while it shrank, all of it, with the same forces; returns its
@@ -356,7 +351,7 @@ impl<'a> Growing<'a> {
     }
 
     fn shape(&self) -> Shape {
-        Shape::new(self.metal, &self.moved, &self.there, self.clamped)
+        Shape::new(self.metal, &self.moved, &self.there, &self.lower, self.clamped)
     }
 
     fn distortion(self, steps: Vec<Step>, [clamped, released]: [Shape; 2], balance: [Balance; 2]) -> Distortion {
@@ -375,6 +370,14 @@ impl<'a> Growing<'a> {
             iterations: self.iterations,
         }
     }
+}
+
+/// Nodes of the plate's lower face.
+fn lower_face(metal: &Metal) -> Vec<usize> {
+    let grid = &metal.grid;
+    let [nx, ny, _] = grid.node_counts();
+    let nodes = (0..nx * ny).map(|i| grid.node([i % nx, i / nx, metal.plate_bottom]));
+    nodes.filter(|&node| touching(grid, node).any(|voxel| metal.born[voxel] == 0)).collect()
 }
 
 /// The springs of a clamp: nodes of the plate's upper face within its radius share its stiffness.

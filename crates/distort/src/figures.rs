@@ -113,39 +113,41 @@ pub struct Calibration {
 }
 
 impl Shape {
-    pub(crate) fn new(metal: &Metal, moved: &[[f64; 3]], there: &[bool], clamped: bool) -> Self {
+    /// `lower` has the nodes of the plate's lower face.
+    pub(crate) fn new(metal: &Metal, moved: &[[f64; 3]], there: &[bool], lower: &[usize], clamped: bool) -> Self {
         let grid = &metal.grid;
         let nodes: Vec<usize> = (0..there.len()).filter(|&node| there[node]).collect();
         let raw = |node: usize| (grid.place(node), DVec3::from_array(moved[node]));
-        let touches = |node: usize, plate: bool| {
-            touching(grid, node).any(|v| metal.factors[v] > 0.0 && (metal.born[v] == 0) == plate)
-        };
-        let lower: Vec<usize> =
-            nodes.iter().copied().filter(|&n| grid.node_at(n)[2] == metal.plate_bottom && touches(n, true)).collect();
-        let part: Vec<usize> = nodes.iter().copied().filter(|&node| touches(node, false)).collect();
+        let welded = |voxel: usize| metal.factors[voxel] > 0.0 && metal.born[voxel] > 0;
+        let of_part = |node: &usize| touching(grid, *node).any(welded);
+        let part: Vec<usize> = nodes.iter().copied().filter(of_part).collect();
         let plane = Rigid::fitted(lower.iter().map(|&node| raw(node)));
-        let lift = lift(lower.iter().map(|&node| raw(node)), &plane);
         let own = Rigid::fitted(part.iter().map(|&node| raw(node)));
         let deviation = deviation(part.iter().map(|&node| raw(node)), &own);
         let seen = |&node: &usize| {
             let (place, moved) = raw(node);
             if clamped { moved } else { moved - plane.at(place) }
         };
-        Self { moved: nodes.iter().map(seen).collect(), nodes, lift, deviation }
+        Self { moved: nodes.iter().map(seen).collect(), nodes, lift: Lift::of(grid, moved, lower), deviation }
     }
 }
 
-fn lift(face: impl Iterator<Item = (DVec3, DVec3)>, plane: &Rigid) -> Lift {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    let mut lift = Lift::default();
-    for (place, moved) in face {
-        let height = (moved - plane.at(place)).z;
-        (low, high) = (low.min(height), high.max(height));
-        if height.abs() > lift.largest {
-            (lift.largest, lift.at) = (height.abs(), place);
+impl Lift {
+    /// Of the nodes of the plate's lower face.
+    pub(crate) fn of(grid: &Grid, moved: &[[f64; 3]], lower: &[usize]) -> Self {
+        let face = lower.iter().map(|&node| (grid.place(node), DVec3::from_array(moved[node])));
+        let plane = Rigid::fitted(face.clone());
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut lift = Self::default();
+        for (place, moved) in face {
+            let height = (moved - plane.at(place)).z;
+            (low, high) = (low.min(height), high.max(height));
+            if height.abs() > lift.largest {
+                (lift.largest, lift.at) = (height.abs(), place);
+            }
         }
+        Self { range: (high - low).max(0.0), ..lift }
     }
-    Lift { range: (high - low).max(0.0), ..lift }
 }
 
 fn deviation(part: impl Iterator<Item = (DVec3, DVec3)>, own: &Rigid) -> Deviation {

@@ -54,7 +54,7 @@ impl Settings {
             voxel: 3.0,
             voxel_height: 2.0,
             most_steps: 100,
-            tolerance: 1e-3,
+            tolerance: 1e-2,
         }
     }
 

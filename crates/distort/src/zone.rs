@@ -3,6 +3,7 @@
 use crate::input::Bead;
 use crate::metal::{Metal, Piece, pieces};
 use crate::settings::Settings;
+use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 /// A piece with metal in less than this area, mm², pulls nothing.
@@ -45,18 +46,24 @@ impl Settings {
     }
 }
 
-/// Adds the stress-free strains of a bead to those of the voxels so far; returns the voxels, in order.
-pub(crate) fn shrink(bead: &Bead, metal: &Metal, settings: &Settings, strains: &mut [[f64; 6]]) -> Vec<usize> {
+/// Adds the stress-free strains of beads, in the order of welding, to those of the voxels so far; returns the voxels.
+pub(crate) fn shrink(beads: &[&Bead], metal: &Metal, settings: &Settings, strains: &mut [[f64; 6]]) -> Vec<usize> {
     let most = settings.zone_strain * settings.saturation;
-    let mut changed: Vec<(usize, Share)> = shares(bead, metal, settings).into_iter().collect();
-    changed.sort_by_key(|&(voxel, _)| voxel);
-    for (voxel, share) in &changed {
+    let shares: Vec<Vec<(usize, Share)>> =
+        beads.par_iter().map(|bead| in_order(shares(bead, metal, settings))).collect();
+    for (voxel, share) in shares.iter().flatten() {
         let strain = &mut strains[*voxel];
         let before: f64 = -strain.iter().zip(&share.direction).map(|(s, d)| s * d).sum::<f64>() / share.amount;
         let part = ((most - before) / share.amount).clamp(0.0, 1.0);
         strain.iter_mut().zip(&share.strain).for_each(|(s, added)| *s += part * added);
     }
-    changed.into_iter().map(|(voxel, _)| voxel).collect()
+    shares.into_iter().flatten().map(|(voxel, _)| voxel).collect()
+}
+
+fn in_order(shares: FxHashMap<usize, Share>) -> Vec<(usize, Share)> {
+    let mut shares: Vec<(usize, Share)> = shares.into_iter().collect();
+    shares.sort_unstable_by_key(|&(voxel, _)| voxel);
+    shares
 }
 
 fn shares(bead: &Bead, metal: &Metal, settings: &Settings) -> FxHashMap<usize, Share> {
