@@ -377,7 +377,7 @@ fn lower_face(metal: &Metal) -> Vec<usize> {
     let grid = &metal.grid;
     let [nx, ny, _] = grid.node_counts();
     let nodes = (0..nx * ny).map(|i| grid.node([i % nx, i / nx, metal.plate_bottom]));
-    nodes.filter(|&node| touching(grid, node).any(|voxel| metal.born[voxel] == 0)).collect()
+    nodes.filter(|&node| grid.touching(node).any(|voxel| metal.born[voxel] == 0)).collect()
 }
 
 /// The springs of a clamp: nodes of the plate's upper face within its radius share its stiffness.
@@ -385,7 +385,7 @@ fn springs(clamp: &Clamp, metal: &Metal) -> Vec<(usize, [f64; 3])> {
     let grid = &metal.grid;
     let [nx, ny, _] = grid.node_counts();
     let places = (0..nx * ny).map(|i| grid.node([i % nx, i / nx, metal.plate_top]));
-    let of_plate = |node: &usize| touching(grid, *node).any(|voxel| metal.born[voxel] == 0);
+    let of_plate = |node: &usize| grid.touching(*node).any(|voxel| metal.born[voxel] == 0);
     let distance = |node: usize| (grid.place(node) - clamp.at).truncate().length();
     let of_plate: Vec<usize> = places.filter(of_plate).collect();
     let mut held: Vec<usize> = of_plate.iter().copied().filter(|&node| distance(node) <= clamp.radius).collect();
@@ -414,14 +414,4 @@ fn holds(springs: impl Iterator<Item = (usize, [f64; 3])>, grid: &Grid) -> bool 
     // Solving for a motion with every part in it finds the whole of it only if nothing is free.
     let right = std::array::from_fn(|row| matrix[row].iter().sum());
     crate::rigid::solved(matrix, right).iter().all(|part| (part - 1.0).abs() < 1e-3)
-}
-
-/// Voxels around a node.
-pub(crate) fn touching(grid: &Grid, node: usize) -> impl Iterator<Item = usize> {
-    let at = grid.node_at(node);
-    let grid = *grid;
-    (0..8).filter_map(move |part| {
-        let side = |d: usize| at[d].checked_sub(part >> d & 1).filter(|&a| a < grid.counts[d]);
-        Some(grid.voxel([side(0)?, side(1)?, side(2)?]))
-    })
 }

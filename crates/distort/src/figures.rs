@@ -1,6 +1,5 @@
 //! What comes out: shapes before and after release, and their figures.
 
-use crate::build::touching;
 use crate::error::DistortError;
 use crate::grid::Grid;
 use crate::metal::Metal;
@@ -119,7 +118,7 @@ impl Shape {
         let nodes: Vec<usize> = (0..there.len()).filter(|&node| there[node]).collect();
         let raw = |node: usize| (grid.place(node), DVec3::from_array(moved[node]));
         let welded = |voxel: usize| metal.factors[voxel] > 0.0 && metal.born[voxel] > 0;
-        let of_part = |node: &usize| touching(grid, *node).any(welded);
+        let of_part = |node: &usize| grid.touching(*node).any(welded);
         let part: Vec<usize> = nodes.iter().copied().filter(of_part).collect();
         let plane = Rigid::fitted(lower.iter().map(|&node| raw(node)));
         let own = Rigid::fitted(part.iter().map(|&node| raw(node)));

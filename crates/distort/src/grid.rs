@@ -75,6 +75,15 @@ impl Grid {
         std::array::from_fn(|c| self.node([i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)]))
     }
 
+    /// Indices of the voxels around a node, up to eight.
+    pub fn touching(&self, node: usize) -> impl Iterator<Item = usize> {
+        let (grid, at) = (*self, self.node_at(node));
+        (0..8).filter_map(move |part| {
+            let side = |d: usize| at[d].checked_sub(part >> d & 1).filter(|&a| a < grid.counts[d]);
+            Some(grid.voxel([side(0)?, side(1)?, side(2)?]))
+        })
+    }
+
     /// Index of the voxel that holds a place (mm), if any does.
     pub fn voxel_of(&self, place: DVec3) -> Option<usize> {
         let at = ((place - self.low) / self.size).floor().to_array();

@@ -53,7 +53,7 @@ impl Settings {
             calibration: 1.0,
             voxel: 3.0,
             voxel_height: 2.0,
-            most_steps: 100,
+            most_steps: 80,
             tolerance: 1e-2,
         }
     }
