@@ -14,6 +14,7 @@ mod completions;
 mod convert;
 mod deviation;
 mod directions;
+mod distort;
 mod example;
 mod export;
 mod file;
@@ -103,6 +104,8 @@ enum Command {
     Reach(reach::Arguments),
     /// Compute how warm the metal is before each pass of a plan, and how much time an interpass limit costs.
     Heat(heat::Arguments),
+    /// Compute how plate and part bend as the beads shrink, on the clamps and released.
+    Distort(distort::Arguments),
     /// Reproduce the papers' experiments: our results next to theirs.
     Reproduce(reproduce::Arguments),
     /// Write a plan for other programs: tables, lines for ParaView, toolpaths in 3MF, the shape as built, drawings of layers.
@@ -145,6 +148,7 @@ fn main() -> ExitCode {
         Command::Build(arguments) => build::run(&arguments),
         Command::Reach(arguments) => reach::run(&arguments),
         Command::Heat(arguments) => heat::run(&arguments),
+        Command::Distort(arguments) => distort::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

@@ -25,6 +25,7 @@ pub mod as_built;
 pub mod build;
 pub mod check;
 pub mod compare;
+pub mod distortion;
 pub mod export;
 pub mod files;
 pub mod plan;
@@ -52,6 +53,7 @@ pub use bead_program::{dialect, program};
 #[doc(hidden)]
 pub use bead_program::{number, template};
 pub use bead_robot as robot;
+pub use distort;
 
 pub use crate::bead::Bead;
 pub use crate::check::check;

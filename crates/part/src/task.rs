@@ -17,6 +17,8 @@ pub enum Stage {
     Deposit,
     /// Computing how warm the part is before each pass.
     Heat,
+    /// Computing how plate and part bend.
+    Distort,
 }
 
 impl Stage {
@@ -28,6 +30,7 @@ impl Stage {
             Self::Plan => "plan",
             Self::Deposit => "deposit",
             Self::Heat => "heat",
+            Self::Distort => "distort",
         }
     }
 }

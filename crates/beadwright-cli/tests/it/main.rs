@@ -10,6 +10,7 @@ mod cli;
 mod common;
 mod convert;
 mod deviation;
+mod distort;
 mod exports;
 mod folder;
 mod guide;

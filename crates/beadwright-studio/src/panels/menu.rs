@@ -193,6 +193,7 @@ fn stage_text(stage: Stage) -> &'static str {
     match stage {
         Stage::Import => "stage-import",
         Stage::Heat => "stage-heat",
+        Stage::Distort => "stage-distort",
         Stage::Slice => "stage-slice",
         Stage::Plan => "stage-plan",
         Stage::Deposit => "stage-deposit",

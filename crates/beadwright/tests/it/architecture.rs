@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Modules of the crates below the command, from the top of the table to its bottom; those in one row do not know each other.
-/// Between crates Cargo keeps the arrows: `planar`, `part`, `plan`, `program`, `robot`, `beadwright`, `papers`.
+/// Between crates Cargo keeps the arrows: `planar`, `part`, `plan`, `program`, `robot`, `distort`, `beadwright`, `papers`.
 const CRATES: &[(&str, &[&[&str]])] = &[
     (
         "part",
@@ -55,11 +55,26 @@ const CRATES: &[(&str, &[&[&str]])] = &[
         ],
     ),
     (
+        "distort",
+        &[
+            &["element", "envelope", "grid", "real", "rigid"],
+            &["error", "mesh", "vector"],
+            &["eccentricity", "input", "level"],
+            &["multigrid"],
+            &["system"],
+            &["body"],
+            &["settings"],
+            &["metal"],
+            &["figures", "zone"],
+            &["build"],
+        ],
+    ),
+    (
         "beadwright",
         &[
             // Holds the settings of all stages of the crates below, which can be used without it.
             &["profile"],
-            &["metrics"],
+            &["distortion", "metrics"],
             &["plan"],
             &["plan_file", "check"],
             &["report"],

@@ -1,0 +1,35 @@
+//! `beadwright distort`: a wall bends its plate.
+
+use crate::common::beadwright;
+use std::process::Output;
+
+fn said(output: &Output) -> String {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+#[test]
+fn the_plate_of_a_plan_bends() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    said(&beadwright(at, &["example", "cross", "-o", "cross.stl"]));
+    said(&beadwright(at, &["plan", "cross.stl", "--no-deposit", "-o", "plan", "--scale", "0.5"]));
+    let rough = ["distort", "plan/plan.json", "--voxel", "8", "--voxel-height", "4", "--steps", "6"];
+    let text = said(&beadwright(at, &rough));
+    assert!(text.contains("lift of the plate, released") && text.contains("deviation of the part"), "{text}");
+    let lift = |more: &[&str]| {
+        let text = said(&beadwright(at, &[&rough[..], &["--json"], more].concat()));
+        let all: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert!(all["balance"]["released"]["residual"].as_f64().unwrap() < 1e-8);
+        assert!(!all["released"]["nodes"].as_array().unwrap().is_empty());
+        ["clamped", "released"].map(|shape| all[shape]["lift"]["range"].as_f64().unwrap())
+    };
+    let ([clamped, released], [free, same]) = (lift(&[]), lift(&["--clamps", "none"]));
+    assert!(0.0 < clamped && clamped < released && (free / same - 1.0).abs() < 1e-6, "{clamped} {released} {free} {same}");
+    let [_, twice] = lift(&["--calibration", "2"]);
+    assert!((twice / released - 2.0).abs() < 1e-4, "{twice} {released}");
+    let refused = beadwright(at, &["distort", "plan/plan.json", "--calibration", "-1"]);
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    let refused = beadwright(at, &["distort", "plan/plan.json", "--calibration", "1000"]);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("calibration = 1000"), "{refused:?}");
+}

@@ -1,0 +1,12 @@
+//! All tests of the crate as one program: each file is a module, `cargo test -p bead-distort --test it FILE::` runs one.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
+
+mod balance;
+mod calibrate;
+mod closed_forms;
+mod eccentricity;
+mod errors;
+mod parts;
+mod steps;
+mod symmetry;
+mod tendon;
