@@ -25,7 +25,10 @@ fn the_plate_of_a_plan_bends() {
         ["clamped", "released"].map(|shape| all[shape]["lift"]["range"].as_f64().unwrap())
     };
     let ([clamped, released], [free, same]) = (lift(&[]), lift(&["--clamps", "none"]));
-    assert!(0.0 < clamped && clamped < released && (free / same - 1.0).abs() < 1e-6, "{clamped} {released} {free} {same}");
+    assert!(
+        0.0 < clamped && clamped < released && (free / same - 1.0).abs() < 1e-6,
+        "{clamped} {released} {free} {same}"
+    );
     let [_, twice] = lift(&["--calibration", "2"]);
     assert!((twice / released - 2.0).abs() < 1e-4, "{twice} {released}");
     let refused = beadwright(at, &["distort", "plan/plan.json", "--calibration", "-1"]);
