@@ -82,11 +82,11 @@ impl Settings {
     }
 }
 
-/// Tendon force per heat input per length, N/(J/mm): 0.335 α E / ρc (Okerblom 1958, from plane sections and a line source in
-/// a wide plate), with expansion α, 1/K, heat capacity of the volume ρc, J/(mm³·K), and Young's modulus E, MPa.
+/// Tendon force per heat input per length, N/(J/mm): 0.335 α E / ρc, as it is quoted from Okerblom (1958), with expansion
+/// α, 1/K, heat capacity of the volume ρc, J/(mm³·K), and Young's modulus E, MPa.
 ///
 /// ```
-/// // 12 · 10⁻⁶/K and 4.5 · 10⁻³ J/(mm³·K): close to the 200 measured by White.
+/// // 12 · 10⁻⁶/K and 4.5 · 10⁻³ J/(mm³·K): close to the 200 in common use.
 /// let steel = distort::okerblom(12e-6, 4.5e-3, 210e3);
 /// assert!((steel - 187.6).abs() < 0.1);
 /// ```
