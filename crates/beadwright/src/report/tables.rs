@@ -242,15 +242,22 @@ pub(super) fn warnings(summary: &Summary, findings: &[Finding]) -> String {
     format!("<ul class=\"warnings\">\n{}\n</ul>", items.join("\n"))
 }
 
+/// Most findings of one kind that the page lists, so that it opens quickly whatever is wrong.
+const MOST_LISTED: usize = 500;
+
 /// A finding, and others of its kind.
 fn alike_ones((first, rest): (&&Finding, &[&Finding])) -> String {
     let (word, name) = (first.severity.title(), first.kind);
     let class = if first.severity == Severity::Serious { " class=\"serious\"" } else { "" };
-    let more: Vec<String> =
-        rest.iter().map(|finding| format!("<li>{}{}</li>", escape(&finding.text), link_of(finding))).collect();
-    let more = match more.len() {
+    let item = |finding: &&Finding| format!("<li>{}{}</li>", escape(&finding.text), link_of(finding));
+    let more: Vec<String> = rest.iter().take(MOST_LISTED).map(item).collect();
+    let summary = match rest.len() {
+        n if n > MOST_LISTED => format!("And {n} more, of which {MOST_LISTED} are listed"),
+        n => format!("And {n} more"),
+    };
+    let more = match rest.len() {
         0 => String::new(),
-        n => format!("<details><summary>And {n} more</summary><ul>\n{}\n</ul></details>", more.join("\n")),
+        _ => format!("<details><summary>{summary}</summary><ul>\n{}\n</ul></details>", more.join("\n")),
     };
     format!("<li{class}><b title=\"{name}\">{word}</b> {}{}{more}</li>", escape(&first.sentence()), link_of(first))
 }
