@@ -170,13 +170,13 @@ impl Series {
         self.trials.last().map_or(0, |trial| trial.plate + 1)
     }
 
-    /// The layers of a plate, each trial a body of its own, and the process with a row for each whose wire feed or job differs
+    /// The layers of a plate, and the process with a row for each whose wire feed or job differs
     /// from the nominal one.
     pub fn layers(&self, plate: usize) -> (Vec<Layer>, Process) {
         let (mut layers, mut process) = (Vec::new(), self.process.clone());
         process.layers.clear();
         let trials = || self.trials.iter().filter(|trial| trial.plate == plate);
-        for (body, trial) in trials().enumerate() {
+        for trial in trials() {
             let (speed, rate) = self.speed_and_feed(&trial.values);
             let job = self.value(&trial.values, Parameter::Job).map(|job| job as u32);
             let dwell = self.value(&trial.values, Parameter::Dwell).unwrap_or(0.0);
@@ -188,7 +188,7 @@ impl Series {
                 let paths: Vec<&[DVec2]> = own.map(|(_, path)| path.as_slice()).collect();
                 let wait = if level > 0 { dwell } else { self.spacing.wait };
                 let laid = Laid { level, width: trial.width, pace: speed / rate, wait };
-                layers.push(Layer { body, ..self.layer(layers.len(), &paths, &laid) });
+                layers.push(self.layer(layers.len(), &paths, &laid));
             }
             if rate != 1.0 || job.is_some() {
                 let deposition_speed = rate * self.process.deposition_speed;
@@ -201,7 +201,7 @@ impl Series {
             let paths: Vec<&[DVec2]> = numbers.iter().map(Vec::as_slice).collect();
             let (pace, wait) = (self.process.deposition_speed, self.spacing.wait);
             let laid = Laid { level: 0, width: self.width, pace, wait };
-            layers.push(Layer { body: trials().count(), ..self.layer(layers.len(), &paths, &laid) });
+            layers.push(self.layer(layers.len(), &paths, &laid));
         }
         (layers, process)
     }

@@ -119,7 +119,7 @@ fn trials_and_their_numbers_lie_apart_on_their_plates_in_an_order_of_their_own()
             orders.insert(format!("{:?}", series.trials.iter().map(|trial| trial.values.clone()).collect::<Vec<_>>()));
             for plate in 0..series.plates() {
                 let (layers, process) = series.layers(plate);
-                assert_eq!(process.layers.iter().all(|row| row.from <= row.to), true, "{case}");
+                assert!(process.layers.iter().all(|row| row.from <= row.to), "{case}");
                 let lines: Vec<(usize, Vec<DVec2>)> = layers
                     .iter()
                     .flat_map(|layer| {
