@@ -59,6 +59,9 @@ pub(crate) struct Fit {
     /// Wanted bead, width and layer height in mm, such as 6x2: the parameters that lay it are printed, and written with --to.
     #[arg(long, value_parser = parse_bead, value_name = "WIDTHxHEIGHT")]
     want: Option<(f64, f64)>,
+    /// Largest deviation of width and layer height from the wanted bead, %.
+    #[arg(long, requires = "want", default_value_t = 0.5, value_name = "PERCENT")]
+    tolerance: f64,
     /// Profile on which that for the wanted bead is based: a built-in name or a TOML file.
     #[arg(long, short, requires = "want", default_value = profile::USUAL, value_name = "NAME|FILE")]
     profile: String,
@@ -419,7 +422,8 @@ fn print_recipe(out: &mut impl Write, library: &BeadLibrary, recipe: &Recipe) ->
 
 /// The parameters for a bead of this width and layer height, mm.
 fn wanted(arguments: &Fit, library: &BeadLibrary, (width, layer_height): (f64, f64)) -> anyhow::Result<Recipe> {
-    let wish = Wish { layering: arguments.layering.layering(width)?, ..Wish::new(width, layer_height) };
+    let (layering, tolerance) = (arguments.layering.layering(width)?, arguments.tolerance / 100.0);
+    let wish = Wish { layering, tolerance, ..Wish::new(width, layer_height) };
     Ok(library.solve(&wish)?)
 }
 
