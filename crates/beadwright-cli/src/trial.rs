@@ -6,7 +6,7 @@ use beadwright::Layer;
 use beadwright::adapt::scan;
 use beadwright::files::{Folder, PLAN, write_file};
 use beadwright::number::fixed;
-use beadwright::trial::{self, Design, Factor, Plate, PlatePlan, Series, Shape, Spacing};
+use beadwright::trial::{self, Design, Factor, Layout, Plate, PlatePlan, Series, Shape};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -121,6 +121,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let title = format!("Trials with {}", own.name);
     let posts = if arguments.post.is_empty() { &own.posts } else { &arguments.post };
     let folder = if arguments.post.is_empty() { profile::folder(name) } else { PathBuf::new() };
+    let stale = arguments.output.join(PlatePlan::name(series.plates()));
+    anyhow::ensure!(
+        !stale.exists(),
+        "{} is a plate of an earlier series and would be taken for one of this. Remove it, or write to another folder (-o).",
+        stale.display()
+    );
     let plans: Vec<PlatePlan> = (0..series.plates()).map(|index| PlatePlan::new(&series, index, &own)).collect();
     let mut plates = Vec::new();
     for plan in &plans {
@@ -169,11 +175,16 @@ fn series(arguments: &Arguments, profile: &beadwright::Profile, plate: Plate) ->
         count <= MOST,
         "{count} trials are more than the {MOST} that can be numbered: use fewer --levels, or --design latin-hypercube."
     );
-    let spacing =
-        Spacing { length: arguments.length, gap: arguments.gap, wait: arguments.wait, numbers: !arguments.no_numbers };
-    let process = (&profile.process, profile.bead.width, profile.layers.height);
-    let repeats = arguments.repeats.into();
-    Ok(Series::new((factors, &combinations), (shape, repeats), (plate, spacing), process, arguments.seed)?)
+    let layout = Layout {
+        plate,
+        repeats: arguments.repeats.into(),
+        seed: arguments.seed,
+        length: arguments.length,
+        gap: arguments.gap,
+        wait: arguments.wait,
+        numbers: !arguments.no_numbers,
+    };
+    Ok(Series::new(factors, &combinations, shape, layout, trial::nominal(profile))?)
 }
 
 fn say(arguments: &Arguments, series: &Series, plans: &[PlatePlan]) -> anyhow::Result<()> {
@@ -228,7 +239,7 @@ fn parse_length(text: &str) -> Result<f64, String> {
 
 pub(crate) fn measure(arguments: &Measure) -> anyhow::Result<()> {
     let text = file::text(&arguments.sheet)?;
-    let folder = arguments.sheet.parent().unwrap_or(Path::new("")).join(format!("trial_{}", arguments.plate));
+    let folder = arguments.sheet.parent().unwrap_or(Path::new("")).join(PlatePlan::name(arguments.plate.max(1) - 1));
     let source = program::Source::open(&folder.join(PLAN))?;
     let plan = source.plan().with_context(|| format!("{} holds no plan.json", folder.display()))?;
     // The last layer may be numbers: a trial is one bead.

@@ -16,6 +16,11 @@ use crate::report::sheet::{Row, Sheet};
 use crate::warning::Warnings;
 use std::fmt::Write;
 
+/// What the trials of a profile vary.
+pub fn nominal(profile: &Profile) -> Nominal {
+    Nominal { process: profile.process.clone(), width: profile.bead.width, height: profile.layers.height }
+}
+
 /// The plan of one plate: its layers, and the profile that welds them.
 pub struct PlatePlan {
     /// Name of the plate, for files and programs.
@@ -31,7 +36,12 @@ impl PlatePlan {
         let (layers, process) = series.layers(index);
         let mut profile = profile.clone();
         profile.process = process;
-        Self { name: format!("trial_{}", index + 1), profile, layers }
+        Self { name: Self::name(index), profile, layers }
+    }
+
+    /// Name of plate `index`, from 0.
+    pub fn name(index: usize) -> String {
+        format!("trial_{}", index + 1)
     }
 
     /// Totals: arc time, wire, starts.

@@ -139,6 +139,32 @@ fn used_modules(name: &str) -> BTreeMap<String, BTreeSet<String>> {
     used
 }
 
+/// Some libraries are not built a second time for tests in their files: those files are compiled with `tests/it/inside.rs`.
+#[test]
+fn no_test_lies_in_a_file_where_it_would_never_run() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut without = 0;
+    for folder in fs::read_dir(crates).unwrap().map(|entry| entry.unwrap().path()) {
+        let manifest = fs::read_to_string(folder.join("Cargo.toml")).unwrap_or_default();
+        let library = manifest.split("\n[").find(|section| section.starts_with("lib]"));
+        if !library.is_some_and(|section| section.lines().any(|line| line == "test = false")) {
+            continue;
+        }
+        without += 1;
+        let inside = fs::read_to_string(folder.join("tests/it/inside.rs")).unwrap_or_default();
+        for file in rust_files(&folder.join("src")) {
+            let named = file.strip_prefix(&folder).unwrap().display().to_string();
+            let tests = fs::read_to_string(&file).unwrap().contains("#[test]");
+            assert!(
+                !tests || inside.contains(&format!("\"../../{named}\"")),
+                "{}: add it to tests/it/inside.rs",
+                file.display()
+            );
+        }
+    }
+    assert!(without >= 4, "{without}");
+}
+
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
     let files = entries.flat_map(|path| if path.is_dir() { rust_files(&path) } else { vec![path] });

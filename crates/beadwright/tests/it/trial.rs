@@ -6,7 +6,7 @@ use beadwright::bead::library::{BeadLibrary, Columns, Layering, Measured, Wish};
 use beadwright::dialect;
 use beadwright::files::Programs;
 use beadwright::profile::{Profile, edit};
-use beadwright::trial::{Design, Factor, Plate, PlatePlan, Series, Shape, Spacing, points};
+use beadwright::trial::{self, Design, Factor, Layout, Plate, PlatePlan, Series, Shape, points};
 use common::{planned, profile, read_back, with_all_dialects};
 use std::collections::BTreeMap;
 
@@ -14,9 +14,8 @@ fn series(profile: &Profile, factors: &[&str], design: Design, seed: u64) -> Ser
     let factors: Vec<Factor> = factors.iter().map(|text| text.parse().unwrap()).collect();
     let combinations = points(design, &factors, seed).unwrap();
     let plate = Plate { length: 500.0, width: 300.0, margin: 20.0 };
-    let spacing = Spacing { length: 80.0, gap: 12.0, wait: 45.0, numbers: true };
-    let nominal = (&profile.process, profile.bead.width, profile.layers.height);
-    Series::new((factors, &combinations), (Shape::Bead, 1), (plate, spacing), nominal, seed).unwrap()
+    let layout = Layout { plate, repeats: 1, seed, length: 80.0, gap: 12.0, wait: 45.0, numbers: true };
+    Series::new(factors, &combinations, Shape::Bead, layout, trial::nominal(profile)).unwrap()
 }
 
 fn files(plan: &PlatePlan, post: &str) -> BTreeMap<String, String> {

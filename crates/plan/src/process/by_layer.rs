@@ -3,6 +3,7 @@
 use super::Process;
 use crate::limit::Broken;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// Another speed for some layers, such as the first ones on a cold plate. The wire feed changes by the same factor, so the
 /// bead stays the same.
@@ -20,6 +21,11 @@ pub struct LayerProcess {
     pub current: Option<f64>,
     /// Job of the power source, `{{job}}` in templates; default that of the process.
     pub job: Option<u32>,
+}
+
+impl LayerProcess {
+    /// Speeds and wire feeds over the nominal ones that a row may have.
+    pub const RATES: RangeInclusive<f64> = 0.2..=5.0;
 }
 
 impl Process {
@@ -41,7 +47,8 @@ impl Process {
 
     /// The first invalid row of layers.
     pub fn broken(&self) -> Option<Broken> {
-        let (least, most) = (0.2 * self.deposition_speed, 5.0 * self.deposition_speed);
+        let [least, most] =
+            [LayerProcess::RATES.start(), LayerProcess::RATES.end()].map(|rate| rate * self.deposition_speed);
         self.layers.iter().find_map(|row| {
             let LayerProcess { from, to, deposition_speed: speed, current, .. } = *row;
             let reason = if from == 0 || to < from {

@@ -21,8 +21,8 @@ const TRIED: usize = 300;
 /// Middle points of a Box–Behnken design.
 const MIDDLES: usize = 3;
 
-/// The combinations of a design: one value for each factor; `None` where a Box–Behnken design does not exist for so many
-/// factors. `seed` matters for Latin hypercubes only.
+/// The combinations of a design: one value for each factor; `None` where a Box–Behnken design does not exist for that
+/// number of factors. `seed` matters for Latin hypercubes only.
 ///
 /// ```
 /// use bead_plan::trial::{Design, Factor, points};

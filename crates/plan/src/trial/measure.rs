@@ -1,5 +1,6 @@
 //! Beads measured in a scan of the plate, in place of callipers.
 
+use crate::bead::library::Factored;
 use glam::{DVec2, DVec3};
 
 /// What a scan says of a bead.
@@ -104,23 +105,9 @@ fn crown(points: &[(f64, f64)]) -> Option<f64> {
     };
     let upper: Vec<(f64, f64)> = points.iter().filter(|p| p.1 > highest / 2.0).copied().collect();
     let middle = upper.iter().map(|p| p.0).sum::<f64>() / upper.len() as f64;
-    let sum = |power: i32| upper.iter().map(|p| (p.0 - middle).powi(power)).sum::<f64>();
-    let with = |power: i32| upper.iter().map(|p| (p.0 - middle).powi(power) * p.1).sum::<f64>();
-    let normal = glam::DMat3::from_cols_array(&[
-        upper.len() as f64,
-        sum(1),
-        sum(2),
-        sum(1),
-        sum(2),
-        sum(3),
-        sum(2),
-        sum(3),
-        sum(4),
-    ]);
-    if normal.determinant().abs() < 1e-12 {
-        return Some(highest);
-    }
-    let [c, b, a] = (normal.inverse() * DVec3::new(with(0), with(1), with(2))).to_array();
+    let column = |power: i32| upper.iter().map(|p| (p.0 - middle).powi(power)).collect();
+    let heights: Vec<f64> = upper.iter().map(|p| p.1).collect();
+    let [c, b, a] = Factored::new(&[column(0), column(1), column(2)]).solve(&heights)[..] else { return Some(highest) };
     let top = if a < 0.0 { c - b * b / (4.0 * a) } else { highest };
     (top > 0.0).then_some(top)
 }
@@ -145,16 +132,15 @@ impl Plane {
         for _ in 0..FITS {
             let near = |p: &&DVec3| (p.z - plane.height(p.truncate())).abs() <= OUTLYING * plane.noise;
             let near: Vec<DVec3> = points.iter().filter(near).copied().collect();
-            let (mut normal, mut right) = (glam::DMat3::ZERO, DVec3::ZERO);
-            for p in &near {
-                let own = plane.own(p.truncate());
-                normal += glam::DMat3::from_cols(own * own.x, own * own.y, own * own.z);
-                right += own * p.z;
-            }
-            if near.len() < POINTS || normal.determinant().abs() < 1e-9 {
+            if near.len() < POINTS {
                 return None;
             }
-            plane.values = normal.inverse() * right;
+            let column = |of: fn(DVec3) -> f64| near.iter().map(|p| of(plane.own(p.truncate()))).collect();
+            let heights: Vec<f64> = near.iter().map(|p| p.z).collect();
+            let columns = [column(|own| own.x), column(|own| own.y), column(|own| own.z)];
+            // Points on one line show no plane.
+            let [height, x, y] = Factored::new(&columns).solve(&heights)[..] else { return None };
+            plane.values = DVec3::new(height, x, y);
             let square = near.iter().map(|p| (p.z - plane.height(p.truncate())).powi(2)).sum::<f64>();
             plane.noise = (square / near.len() as f64).sqrt();
         }

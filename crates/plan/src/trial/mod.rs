@@ -25,6 +25,6 @@ mod sheet;
 pub use design::{Design, points};
 pub use factor::{Factor, FactorError, Parameter};
 pub use measure::{BeadSize, MeasureError, measured};
-pub use plate::{Placed, Plate, PlateError, Series, Spacing};
+pub use plate::{Layout, Nominal, Placed, Plate, PlateError, Series};
 pub use shape::Shape;
 pub use sheet::{SheetError, csv, filled};

@@ -2,7 +2,7 @@
 
 use super::design::shuffled;
 use super::digits;
-use super::shape::{Stroke, bounds, raised};
+use super::shape::{Stroke, bounds};
 use super::{Factor, Parameter, Shape};
 use crate::layer::Layer;
 use crate::pass::{Along, Pass, PassKind};
@@ -22,10 +22,16 @@ pub struct Plate {
     pub margin: f64,
 }
 
-/// Lengths and times between trials.
+/// How trials are laid on plates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spacing {
-    /// Length of a bead, of a leg pair of a corner, mm.
+pub struct Layout {
+    /// The plates.
+    pub plate: Plate,
+    /// How often each combination is welded: in blocks, each in another random order.
+    pub repeats: usize,
+    /// Seed of the random order.
+    pub seed: u64,
+    /// Length of a bead, or of both legs of a corner, mm.
     pub length: f64,
     /// Least distance between the beads of two trials, mm.
     pub gap: f64,
@@ -33,6 +39,17 @@ pub struct Spacing {
     pub wait: f64,
     /// Whether each trial is numbered in weld metal, once all of its plate are welded.
     pub numbers: bool,
+}
+
+/// The process that trials vary, and the beads that it lays.
+#[derive(Debug, Clone)]
+pub struct Nominal {
+    /// The process.
+    pub process: Process,
+    /// Width of a bead, mm.
+    pub width: f64,
+    /// Layer height, mm.
+    pub height: f64,
 }
 
 /// A trial on its plate.
@@ -63,36 +80,32 @@ pub struct Series {
     pub shape: Shape,
     /// The trials in the order of welding.
     pub trials: Vec<Placed>,
-    spacing: Spacing,
-    process: Process,
-    /// Width of the nominal bead, and the layer height, mm.
-    width: f64,
-    height: f64,
+    layout: Layout,
+    nominal: Nominal,
 }
 
 /// Beads may become this much wider than they should; the plate has room for these.
 const WIDEST: f64 = 1.4;
 
 impl Series {
-    /// Places each combination `repeats` times, in a block each, in random order within the block. The process is the nominal
-    /// one, which lays beads of width `width` in layers `height` thick, mm.
+    /// Places each combination as often as it is repeated, in a block each, in random order within the block.
     ///
     /// # Errors
-    /// [`PlateError`] where a factor does not belong to the shape, or a trial is larger than the plate.
+    /// [`PlateError`] where a factor does not belong to the shape, a wire feed lies too far from the nominal one, or a trial is
+    /// larger than the plate.
     pub fn new(
-        (factors, combinations): (Vec<Factor>, &[Vec<f64>]),
-        (shape, repeats): (Shape, usize),
-        (plate, spacing): (Plate, Spacing),
-        (process, width, height): (&Process, f64, f64),
-        seed: u64,
+        factors: Vec<Factor>,
+        combinations: &[Vec<f64>],
+        shape: Shape,
+        layout: Layout,
+        nominal: Nominal,
     ) -> Result<Self, PlateError> {
         if let Some(strange) = factors.iter().find(|factor| !shape.allows(factor.parameter)) {
             return Err(PlateError::Factor(strange.parameter));
         }
-        let mut random = Random::new(seed);
-        let process = process.clone();
-        let mut series = Self { factors, shape, trials: Vec::new(), spacing, process, width, height };
-        for block in 0..repeats {
+        let mut random = Random::new(layout.seed);
+        let mut series = Self { factors, shape, trials: Vec::new(), layout, nominal };
+        for block in 0..layout.repeats {
             for k in shuffled(combinations.len(), &mut random) {
                 let number = series.trials.len() + 1;
                 let values = combinations[k].clone();
@@ -101,10 +114,15 @@ impl Series {
                 series.trials.push(Placed { number, block, plate: 0, values, paths, width, label: DVec2::ZERO });
             }
         }
+        let feed = |trial: &Placed| series.speed_and_feed(&trial.values).1;
+        if let Some(rate) = series.trials.iter().map(feed).find(|rate| !LayerProcess::RATES.contains(rate)) {
+            let nominal = series.nominal.process.wire_feed_speed;
+            return Err(PlateError::Feed { feed: rate * nominal, nominal });
+        }
         // Blocks begin on plates of their own where each fits on one.
-        series.place(plate, true)?;
-        if series.plates() > repeats {
-            series.place(plate, false)?;
+        series.place(true)?;
+        if series.plates() > layout.repeats {
+            series.place(false)?;
         }
         Ok(series)
     }
@@ -116,30 +134,31 @@ impl Series {
     /// The speed of the torch, mm/s, and the wire feed over the nominal one.
     fn speed_and_feed(&self, values: &[f64]) -> (f64, f64) {
         let value = |parameter| self.value(values, parameter);
-        let speed = value(Parameter::DepositionSpeed).unwrap_or(self.process.deposition_speed);
-        (speed, value(Parameter::WireFeedSpeed).map_or(1.0, |feed| feed / self.process.wire_feed_speed))
+        let speed = value(Parameter::DepositionSpeed).unwrap_or(self.nominal.process.deposition_speed);
+        (speed, value(Parameter::WireFeedSpeed).map_or(1.0, |feed| feed / self.nominal.process.wire_feed_speed))
     }
 
     /// Width of a bead that is as high as the nominal one, mm: the metal of the wire.
     fn bead(&self, values: &[f64]) -> f64 {
         let (speed, feed) = self.speed_and_feed(values);
-        self.width * feed * self.process.deposition_speed / speed
+        self.nominal.width * feed * self.nominal.process.deposition_speed / speed
     }
 
     fn strokes(&self, values: &[f64]) -> Vec<Stroke> {
-        self.shape.strokes(self.spacing.length, self.bead(values), |parameter| self.value(values, parameter))
+        self.shape.strokes(self.layout.length, self.bead(values), |parameter| self.value(values, parameter))
     }
 
     /// Rows from below, each from the left: number, then trial.
-    fn place(&mut self, plate: Plate, apart: bool) -> Result<(), PlateError> {
-        let gap = self.spacing.gap;
+    fn place(&mut self, apart: bool) -> Result<(), PlateError> {
+        let Layout { plate, gap, numbers, .. } = self.layout;
+        let nominal = self.nominal.width;
         let room = DVec2::new(plate.length, plate.width) - 2.0 * plate.margin;
         // The corner of the next trial, and the top of the row so far, from the corner of the room.
         let (mut corner, mut top, mut on, mut block) = (DVec2::ZERO, 0.0_f64, 0, 0);
         for trial in &mut self.trials {
-            let widest = WIDEST * trial.width.max(self.width);
-            let number = if self.spacing.numbers { digits::size(trial.number, self.width) } else { DVec2::ZERO };
-            let label = if self.spacing.numbers { number + widest + DVec2::X * gap } else { DVec2::ZERO };
+            let widest = WIDEST * trial.width.max(nominal);
+            let number = if numbers { digits::size(trial.number, nominal) } else { DVec2::ZERO };
+            let label = if numbers { number + widest + DVec2::X * gap } else { DVec2::ZERO };
             let (low, high) = bounds(trial.paths.iter().map(Vec::as_slice));
             let own = high - low + widest;
             let size = DVec2::new(label.x + own.x, own.y.max(label.y));
@@ -170,10 +189,9 @@ impl Series {
         self.trials.last().map_or(0, |trial| trial.plate + 1)
     }
 
-    /// The layers of a plate, and the process with a row for each whose wire feed or job differs
-    /// from the nominal one.
+    /// The layers of a plate, and the process with a row for each whose wire feed or job differs from the nominal one.
     pub fn layers(&self, plate: usize) -> (Vec<Layer>, Process) {
-        let (mut layers, mut process) = (Vec::new(), self.process.clone());
+        let (mut layers, mut process) = (Vec::new(), self.nominal.process.clone());
         process.layers.clear();
         let trials = || self.trials.iter().filter(|trial| trial.plate == plate);
         for trial in trials() {
@@ -186,33 +204,33 @@ impl Series {
             for level in 0..high {
                 let own = strokes.iter().zip(&trial.paths).filter(|(stroke, _)| stroke.layer == level);
                 let paths: Vec<&[DVec2]> = own.map(|(_, path)| path.as_slice()).collect();
-                let wait = if level > 0 { dwell } else { self.spacing.wait };
+                let wait = if level > 0 { dwell } else { self.layout.wait };
                 let laid = Laid { level, width: trial.width, pace: speed / rate, wait };
                 layers.push(self.layer(layers.len(), &paths, &laid));
             }
             if rate != 1.0 || job.is_some() {
-                let deposition_speed = rate * self.process.deposition_speed;
+                let deposition_speed = rate * self.nominal.process.deposition_speed;
                 process.layers.push(LayerProcess { from, to: layers.len(), deposition_speed, current: None, job });
             }
         }
-        if self.spacing.numbers {
-            let numbers = trials().flat_map(|trial| digits::strokes(trial.number, trial.label, self.width));
+        if self.layout.numbers {
+            let numbers = trials().flat_map(|trial| digits::strokes(trial.number, trial.label, self.nominal.width));
             let numbers: Vec<Vec<DVec2>> = numbers.collect();
             let paths: Vec<&[DVec2]> = numbers.iter().map(Vec::as_slice).collect();
-            let (pace, wait) = (self.process.deposition_speed, self.spacing.wait);
-            let laid = Laid { level: 0, width: self.width, pace, wait };
+            let (pace, wait) = (self.nominal.process.deposition_speed, self.layout.wait);
+            let laid = Laid { level: 0, width: self.nominal.width, pace, wait };
             layers.push(self.layer(layers.len(), &paths, &laid));
         }
         (layers, process)
     }
 
     fn layer(&self, index: usize, paths: &[&[DVec2]], laid: &Laid) -> Layer {
-        let (z, width) = ((laid.level + 1) as f64 * self.height, laid.width);
+        let (z, width) = ((laid.level + 1) as f64 * self.nominal.height, laid.width);
         let islands: Vec<Polygon> = paths.iter().map(|path| around(path, width)).collect();
         let pass = |(k, path): (usize, &&[DVec2])| Pass {
             kind: PassKind::Wall,
             closed: false,
-            points: raised(path, DVec2::ZERO, z),
+            points: path.iter().map(|p| p.extend(z)).collect(),
             width: Along::Same(width),
             pace: Along::Same(laid.pace),
             wait: if k == 0 && index > 0 { laid.wait } else { 0.0 },
@@ -221,7 +239,7 @@ impl Series {
         Layer {
             index,
             z,
-            height: self.height,
+            height: self.nominal.height,
             passes: paths.iter().enumerate().map(pass).collect(),
             slice_area: area,
             planned_area: area,
@@ -256,6 +274,17 @@ pub enum PlateError {
     /// A factor of another shape.
     #[error("{0} cannot be varied here: stepover belongs to overlaps, dwell to walls, angle to corners (--shape).")]
     Factor(Parameter),
+    /// A wire feed that a plan cannot have.
+    #[error(
+        "a wire feed of {feed:.2} m/min cannot be tried with a profile for {nominal:.2} m/min: a fifth to five times as much is \
+         possible. Set process.wire_feed_speed nearer to it."
+    )]
+    Feed {
+        /// It, m/min.
+        feed: f64,
+        /// The nominal one, m/min.
+        nominal: f64,
+    },
     /// A trial that does not fit.
     #[error(
         "trial {number} needs a plate of {:.0} × {:.0} mm, edges included, and the plate has {:.0} × {:.0} mm. Give a larger \

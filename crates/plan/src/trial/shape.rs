@@ -1,8 +1,7 @@
 //! What is welded with each combination.
 
 use super::Parameter;
-use glam::{DVec2, DVec3};
-use std::f64::consts::PI;
+use glam::DVec2;
 
 /// The shape of a trial.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,8 +65,8 @@ impl Shape {
                 .collect(),
             Self::Corner => {
                 let half = value(Parameter::Angle).unwrap_or(90.0).to_radians() / 2.0;
-                // The tip on the left, the legs to the right, or upright for a wide angle.
-                let leg = |side: f64| DVec2::from_angle(side * half.min(PI / 2.0)) * length / 2.0;
+                // The tip on the left, the legs to the right.
+                let leg = |side: f64| DVec2::from_angle(side * half) * length / 2.0;
                 let points = vec![leg(-1.0), DVec2::ZERO, leg(1.0)];
                 vec![Stroke { layer: 0, points }]
             }
@@ -79,8 +78,4 @@ impl Shape {
 pub(super) fn bounds<'s>(paths: impl Iterator<Item = &'s [DVec2]>) -> (DVec2, DVec2) {
     let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     paths.flatten().fold(none, |(low, high), p| (low.min(*p), high.max(*p)))
-}
-
-pub(super) fn raised(points: &[DVec2], by: DVec2, z: f64) -> Vec<DVec3> {
-    points.iter().map(|p| (*p + by).extend(z)).collect()
 }

@@ -5,21 +5,29 @@ use crate::bead::library::{LibraryError, fields, separator};
 
 /// The sheet: a line for each trial in the order of welding, with empty cells for what is measured.
 pub fn csv(title: &str, shape: Shape, factors: &[Factor], trials: &[Placed], length: f64) -> String {
-    let fixed: Vec<(&str, String)> = match shape {
-        Shape::Wall(layers) => vec![("length_mm", length.to_string()), ("layers", layers.to_string())],
-        _ => Vec::new(),
+    // What else belongs to a trial of this shape.
+    let more = |trial: &Placed| -> Vec<(&'static str, String)> {
+        match shape {
+            Shape::Wall(layers) => vec![("length_mm", length.to_string()), ("layers", layers.to_string())],
+            Shape::Overlap(_) => {
+                let apart = trial.paths.get(1).map_or(0.0, |second| second[0].distance(trial.paths[0][0]));
+                vec![("distance_mm", format!("{apart:.2}"))]
+            }
+            Shape::Bead | Shape::Corner => Vec::new(),
+        }
     };
+    let names: Vec<&str> = trials.first().map(more).unwrap_or_default().into_iter().map(|(name, _)| name).collect();
     let head = ["bead", "plate", "block"]
         .into_iter()
         .chain(factors.iter().map(|factor| factor.parameter.column()))
-        .chain(fixed.iter().map(|(name, _)| *name))
+        .chain(names)
         .chain(shape.measured().iter().copied())
         .chain(["measured_current_a", "measured_voltage_v", "remarks"]);
     let empty = shape.measured().len() + 3;
     let row = |trial: &Placed| -> String {
         let numbers = [trial.number, trial.plate + 1, trial.block + 1].map(|number| number.to_string());
         let cells = numbers.into_iter().chain(trial.values.iter().map(f64::to_string));
-        let cells = cells.chain(fixed.iter().map(|(_, value)| value.clone())).chain(vec![String::new(); empty]);
+        let cells = cells.chain(more(trial).into_iter().map(|(_, value)| value)).chain(vec![String::new(); empty]);
         joined(cells.collect())
     };
     let head = joined(head.map(str::to_owned).collect());

@@ -2,7 +2,7 @@
 
 use bead_plan::bead::library::{BeadLibrary, Columns, Measured};
 use bead_plan::random::Random;
-use bead_plan::trial::{self, BeadSize, Design, Factor, Parameter, Plate, Series, Shape, Spacing, points};
+use bead_plan::trial::{self, BeadSize, Design, Factor, Layout, Nominal, Parameter, Plate, Series, Shape, points};
 use glam::DVec3;
 use planar::DVec2;
 use std::collections::BTreeSet;
@@ -17,8 +17,8 @@ fn series(texts: &[&str], shape: Shape, repeats: usize, seed: u64) -> Series {
     let factors = factors(texts);
     let combinations = points(Design::Factorial(3), &factors, seed).unwrap();
     let plate = Plate { length: 400.0, width: 250.0, margin: 20.0 };
-    let spacing = Spacing { length: 90.0, gap: 10.0, wait: 60.0, numbers: true };
-    Series::new((factors, &combinations), (shape, repeats), (plate, spacing), (&process(), BEAD, 2.0), seed).unwrap()
+    let layout = Layout { plate, repeats, seed, length: 90.0, gap: 10.0, wait: 60.0, numbers: true };
+    Series::new(factors, &combinations, shape, layout, nominal()).unwrap()
 }
 
 #[test]
@@ -157,6 +157,10 @@ fn trials_and_their_numbers_lie_apart_on_their_plates_in_an_order_of_their_own()
     }
 }
 
+fn nominal() -> Nominal {
+    Nominal { process: process(), width: BEAD, height: 2.0 }
+}
+
 fn process() -> bead_plan::process::Process {
     serde_json::from_value(serde_json::json!({
         "wire_feed_speed": 6.0, "deposition_speed": 8.0, "efficiency": 0.95, "arc_start_delay": 0.5, "arc_end_delay": 0.5,
@@ -241,6 +245,20 @@ fn a_sheet_is_fitted_as_it_is_and_lines_without_measurements_are_left_out() {
     // Nothing measured at all.
     let empty = trial::csv("trials", series.shape, &series.factors, &series.trials, 90.0);
     assert!(Measured::read(&empty, &Columns::default()).unwrap_err().to_string().contains("no bead"));
+}
+
+/// The stepover is a fraction of a width that depends on the speed; at the bench only the distance can be measured.
+#[test]
+fn the_sheet_of_overlaps_says_how_far_apart_the_beads_lie() {
+    let series = series(&["stepover=0.6..0.8", "deposition_speed=6,9"], Shape::Overlap(3), 1, 1);
+    let sheet = trial::csv("overlaps", series.shape, &series.factors, &series.trials, 90.0);
+    let mut lines = sheet.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
+    let at = lines.next().unwrap().iter().position(|name| *name == "distance_mm").unwrap();
+    for (line, trial) in lines.zip(&series.trials) {
+        // Nominal beads are 6 mm wide at 8 mm/s.
+        let expected = trial.values[0] * BEAD * 8.0 / trial.values[1];
+        assert!((line[at].parse::<f64>().unwrap() - expected).abs() < 0.006, "{line:?} {expected}");
+    }
 }
 
 #[test]
@@ -346,10 +364,12 @@ fn what_cannot_be_laid_is_refused_with_the_remedy() {
         let factors = factors(&[factor]);
         let combinations = points(Design::Factorial(3), &factors, 1).unwrap();
         let plate = Plate { length: 200.0, width: 100.0, margin: 10.0 };
-        let spacing = Spacing { length, gap: 10.0, wait: 0.0, numbers: true };
-        Series::new((factors, &combinations), (Shape::Bead, 1), (plate, spacing), (&process(), BEAD, 2.0), 1)
+        let layout = Layout { plate, repeats: 1, seed: 1, length, gap: 10.0, wait: 0.0, numbers: true };
+        Series::new(factors, &combinations, Shape::Bead, layout, nominal())
     };
     assert!(laid("deposition_speed=6..9", 190.0).unwrap_err().to_string().contains("Give a larger one"));
+    let said = laid("wire_feed_speed=0.5..40", 50.0).unwrap_err().to_string();
+    assert!(said.contains("a fifth to five times") && said.contains("process.wire_feed_speed"), "{said}");
     assert!(laid("dwell=6..9", 50.0).unwrap_err().to_string().contains("dwell to walls"));
     assert!(laid("deposition_speed=6..9", 90.0).is_ok());
     assert!(Shape::Bead.allows(Parameter::Job));

@@ -8,7 +8,7 @@ const DEPENDENT: f64 = 1e-7;
 
 /// Q·R of a matrix given by columns.
 #[derive(Debug, Clone)]
-pub(super) struct Factored {
+pub(crate) struct Factored {
     /// Numbers of the columns that were kept, ascending.
     pub(super) kept: Vec<usize>,
     /// Columns of the upper triangle R: column j has j + 1 entries.
@@ -18,7 +18,7 @@ pub(super) struct Factored {
 
 impl Factored {
     /// Factors `columns`; all have the same length, which is at least the number of columns.
-    pub(super) fn new(columns: &[Vec<f64>]) -> Self {
+    pub(crate) fn new(columns: &[Vec<f64>]) -> Self {
         let mut done = Self { kept: Vec::new(), triangle: Vec::new(), reflectors: Vec::new() };
         for (number, column) in columns.iter().enumerate() {
             done.take(number, column);
@@ -55,7 +55,7 @@ impl Factored {
     }
 
     /// The coefficients with which the kept columns best approximate `y`.
-    pub(super) fn solve(&self, y: &[f64]) -> Vec<f64> {
+    pub(crate) fn solve(&self, y: &[f64]) -> Vec<f64> {
         let mut x = y.to_vec();
         self.reflect(&mut x);
         x.truncate(self.kept.len());
