@@ -1,7 +1,7 @@
-//! A solid cut by a level plane: the part above it, closed by a flat face.
+//! A solid cut by a level plane, or by another surface: the part above it, closed by a face along the cut.
 //!
-//! A vertex exactly on the plane counts as above it, for all its triangles alike, as in slicing. Where the surface has holes
-//! at the plane, they stay open.
+//! A vertex exactly on the cut counts as above it, for all its triangles alike, as in slicing. Where the surface of the solid
+//! has holes at the cut, they stay open.
 
 use super::{Mesh, RepairReport};
 use glam::{DVec2, DVec3};
@@ -22,29 +22,79 @@ use std::collections::BTreeMap;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn above(mesh: &Mesh, z: f64) -> Option<(Mesh, RepairReport)> {
-    let mut cut = Cut { mesh, z, vertices: mesh.vertices.clone(), crossings: BTreeMap::new(), rim: BTreeMap::new() };
-    let mut triangles: Vec<[u32; 3]> = Vec::with_capacity(mesh.triangles.len());
-    for triangle in &mesh.triangles {
-        cut.clip(triangle, &mut triangles);
-    }
-    let rings = cut.rings();
-    for (outer, holes) in nested(&rings, &cut.vertices) {
-        let corners: Vec<u32> = std::iter::once(outer).chain(holes.iter().copied()).flatten().copied().collect();
-        let ring = |ring: &[u32]| Ring::new(places(ring, &cut.vertices));
-        let face = Polygon { outer: ring(outer), holes: holes.iter().map(|hole| ring(hole)).collect() };
-        // Wound counter-clockwise seen from below.
-        triangles.extend(triangulate_by_edges(&face).into_iter().map(|[a, b, c]| [a, c, b].map(|i| corners[i])));
-    }
+    let Pieces { vertices, mut kept, face } = pieces(mesh, &Level(z));
+    kept.extend(face);
     let floor = |vertices: Vec<DVec3>| vertices.into_iter().map(|v| v - DVec3::Z * z).collect();
-    let (vertices, triangles) = compact(&cut.vertices, &triangles);
+    let (vertices, triangles) = compact(&vertices, &kept);
     (!triangles.is_empty()).then(|| Mesh::from_triangles(floor(vertices), triangles))
 }
 
+/// A surface along which solids are cut.
+pub(crate) trait Along {
+    /// Whether a point lies above it, or on it.
+    fn is_above(&self, p: DVec3) -> bool;
+
+    /// Where it cuts the edge between a point below and one above.
+    fn crossing(&self, below: DVec3, above: DVec3) -> DVec3;
+
+    /// Its points side by side, seen from above.
+    fn flat(&self, p: DVec3) -> DVec2;
+}
+
+/// A level plane at this height, mm.
+struct Level(f64);
+
+impl Along for Level {
+    fn is_above(&self, p: DVec3) -> bool {
+        p.z >= self.0
+    }
+
+    fn crossing(&self, below: DVec3, above: DVec3) -> DVec3 {
+        below.lerp(above, (self.0 - below.z) / (above.z - below.z)).with_z(self.0)
+    }
+
+    fn flat(&self, p: DVec3) -> DVec2 {
+        p.truncate()
+    }
+}
+
+/// What lies above a cut.
+pub(crate) struct Pieces {
+    /// The vertices of the solid, then those on the cut.
+    pub(crate) vertices: Vec<DVec3>,
+    /// Triangles of the solid's surface.
+    pub(crate) kept: Vec<[u32; 3]>,
+    /// Triangles along the cut, that close it.
+    pub(crate) face: Vec<[u32; 3]>,
+}
+
+/// Cuts a solid along a surface.
+pub(crate) fn pieces(mesh: &Mesh, along: &dyn Along) -> Pieces {
+    let vertices = mesh.vertices.clone();
+    let is_above = vertices.iter().map(|p| along.is_above(*p)).collect();
+    let mut cut = Cut { along, vertices, is_above, crossings: BTreeMap::new(), rim: BTreeMap::new() };
+    let (mut kept, mut face) = (Vec::with_capacity(mesh.triangles.len()), Vec::new());
+    for triangle in &mesh.triangles {
+        cut.clip(triangle, &mut kept);
+    }
+    let rings = cut.rings();
+    let places = |ring: &[u32]| -> Vec<DVec2> { ring.iter().map(|&i| along.flat(cut.vertices[i as usize])).collect() };
+    for (outer, holes) in nested(&rings, &places) {
+        let corners: Vec<u32> = std::iter::once(outer).chain(holes.iter().copied()).flatten().copied().collect();
+        let ring = |ring: &[u32]| Ring::new(places(ring));
+        let shape = Polygon { outer: ring(outer), holes: holes.iter().map(|hole| ring(hole)).collect() };
+        // Wound counter-clockwise seen from below.
+        face.extend(triangulate_by_edges(&shape).into_iter().map(|[a, b, c]| [a, c, b].map(|i| corners[i])));
+    }
+    Pieces { vertices: cut.vertices, kept, face }
+}
+
 struct Cut<'a> {
-    mesh: &'a Mesh,
-    z: f64,
+    along: &'a dyn Along,
     vertices: Vec<DVec3>,
-    /// The vertex on each edge that the plane cuts, by the edge's ends.
+    /// Of the vertices of the solid.
+    is_above: Vec<bool>,
+    /// The vertex on each edge that is cut, by the edge's ends.
     crossings: BTreeMap<[u32; 2], u32>,
     /// The edges of the closing face: for each start, its ends.
     rim: BTreeMap<u32, Vec<u32>>,
@@ -52,7 +102,7 @@ struct Cut<'a> {
 
 impl Cut<'_> {
     fn is_above(&self, vertex: u32) -> bool {
-        self.mesh.vertices[vertex as usize].z >= self.z
+        self.is_above[vertex as usize]
     }
 
     /// Adds the part of a triangle that lies above.
@@ -82,16 +132,16 @@ impl Cut<'_> {
         }
     }
 
-    /// The vertex where the plane cuts an edge.
+    /// The vertex where an edge is cut.
     fn crossing(&mut self, a: u32, b: u32) -> u32 {
         let [low, high] = if self.is_above(a) { [b, a] } else { [a, b] };
-        let [below, above] = [low, high].map(|vertex| self.mesh.vertices[vertex as usize]);
-        if above.z == self.z {
+        let [below, above] = [low, high].map(|vertex| self.vertices[vertex as usize]);
+        let at = self.along.crossing(below, above);
+        if at == above {
             return high;
         }
         *self.crossings.entry([low, high]).or_insert_with(|| {
-            let at = below.lerp(above, (self.z - below.z) / (above.z - below.z));
-            self.vertices.push(at.with_z(self.z));
+            self.vertices.push(at);
             self.vertices.len() as u32 - 1
         })
     }
@@ -126,13 +176,9 @@ impl Cut<'_> {
     }
 }
 
-fn places(ring: &[u32], vertices: &[DVec3]) -> Vec<DVec2> {
-    ring.iter().map(|&i| vertices[i as usize].truncate()).collect()
-}
-
 /// Rings with the holes in them: each hole belongs to the smallest ring around it.
-fn nested<'r>(rings: &'r [Vec<u32>], vertices: &[DVec3]) -> Vec<(&'r [u32], Vec<&'r [u32]>)> {
-    let shapes: Vec<Ring> = rings.iter().map(|ring| Ring::new(places(ring, vertices))).collect();
+fn nested<'r>(rings: &'r [Vec<u32>], places: &dyn Fn(&[u32]) -> Vec<DVec2>) -> Vec<(&'r [u32], Vec<&'r [u32]>)> {
+    let shapes: Vec<Ring> = rings.iter().map(|ring| Ring::new(places(ring))).collect();
     let mut outers: Vec<usize> = (0..rings.len()).filter(|&i| shapes[i].area() > 0.0).collect();
     outers.sort_by(|&a, &b| shapes[a].area().total_cmp(&shapes[b].area()).then(a.cmp(&b)));
     let mut faces: Vec<(&[u32], Vec<&[u32]>)> = outers.iter().map(|&i| (&rings[i][..], Vec::new())).collect();

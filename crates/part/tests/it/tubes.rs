@@ -173,3 +173,34 @@ fn a_trunk_without_its_branches_has_one_island_a_layer() {
         }
     }
 }
+
+/// A branch inside its own cylinder is whole: the cut goes all around where the trunk carries it.
+#[test]
+fn a_branch_cut_all_around_has_one_island_a_layer_at_any_angle() {
+    for (lean, turned) in [(90.0, 0.0), (90.0, 37.0), (62.0, 37.0), (75.0, 111.0), (45.0, 203.0), (80.0, 290.5)] {
+        let bars = tree(&[(75.0, lean, 0.0), (75.0, lean, 90.0), (75.0, 90.0, 180.0), (75.0, 88.0, 270.0)], turned);
+        let mesh = united(&bars);
+        for bar in &bars[1..] {
+            let (axis, through) = (bar.along, bar.from);
+            let [a, t] = [axis, through].map(|v| format!("{}/{}/{}", v.x, v.y, v.z));
+            let inner: Bound = format!("cylinder:axis={a},through={t},radius=12.05,side=inner").parse().unwrap();
+            let half: Bound = format!("up={a},through={t}").parse().unwrap();
+            let case = format!("{lean}° at {turned}°, {axis}");
+            let part = inner.part_of(&mesh);
+            let open = part.neighbours.iter().flatten().filter(|across| **across == u32::MAX).count();
+            assert_eq!(open, 0, "{case}: {open} open edges");
+            let mut branch = half.part_of(&part);
+            // From the middle of the trunk on it is a round bar, and no more.
+            let expected = PI * 12.0 * 12.0 * bar.length;
+            assert!((branch.volume() / expected - 1.0).abs() < 0.02, "{case}: {} {expected}", branch.volume());
+            let turn = DQuat::from_rotation_arc(axis, DVec3::Z);
+            branch.vertices.iter_mut().for_each(|p| *p = turn * (*p - through));
+            let options = SliceOptions { layer_height: 2.0, close_gap: 0.1, simplify: 0.01 };
+            let layers = Slicer::new(&branch, options, &Task::new()).unwrap().all(&Task::new()).unwrap();
+            for layer in &layers {
+                assert_eq!(layer.islands.len(), 1, "{case}: z {}", layer.z);
+                assert!(layer.islands[0].holes.is_empty(), "{case}: z {}", layer.z);
+            }
+        }
+    }
+}
