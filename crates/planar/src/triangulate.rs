@@ -1,8 +1,9 @@
 //! Triangles that fill a polygon with holes: fast, by ear clipping, or with just its edges as their outer edges.
 
 use crate::Polygon;
+use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Triangles as indices into the polygon's points, outer ring first and then the holes in order; counter-clockwise.
 ///
@@ -24,7 +25,7 @@ pub fn triangulate(polygon: &Polygon) -> Vec<[usize; 3]> {
     let mut indices: Vec<usize> = Vec::new();
     earcut::Earcut::new().earcut(points.iter().copied(), &hole_starts, &mut indices);
     let ccw = |&[a, b, c]: &[usize; 3]| {
-        let [a, b, c] = [a, b, c].map(|i| glam::DVec2::from_array(points[i]));
+        let [a, b, c] = [a, b, c].map(|i| DVec2::from_array(points[i]));
         if (b - a).perp_dot(c - a) >= 0.0 { [0, 1, 2] } else { [0, 2, 1] }
     };
     let triangles = indices.as_chunks::<3>().0;
@@ -33,7 +34,8 @@ pub fn triangulate(polygon: &Polygon) -> Vec<[usize; 3]> {
 
 /// Like [`triangulate`], but every edge of the polygon is an edge of exactly one triangle, and every other edge of two,
 /// even where points are exactly collinear, which ear clipping skips: the constrained Delaunay triangulation. Where
-/// edges of the polygon cross, the triangles overlap and some are clockwise, but their signed areas still add up.
+/// edges of the polygon cross, triangles beside them overlap and some are clockwise, but the edges of all together are
+/// those of the polygon, and their signed areas still add up.
 pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
     let (mut corners, mut edges) = (Vec::new(), Vec::new());
     for ring in polygon.rings() {
@@ -48,11 +50,19 @@ pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
     let numbers: Vec<usize> = (0..corners.len()).map(|k| *first_at.entry(place(k)).or_insert(k)).collect();
     let same = |[i, j]: [usize; 2]| [numbers[i].min(numbers[j]), numbers[i].max(numbers[j])];
     edges.iter().for_each(|edge| *times.entry(same(*edge)).or_default() += 1);
+    let rim: Vec<[usize; 2]> = edges.iter().map(|edge| edge.map(|k| numbers[k])).collect();
     edges.retain(|edge| times[&same(*edge)] % 2 == 1);
     let mut crossed = false;
     let all = ConstrainedDelaunayTriangulation::<Corner>::try_bulk_load_cdt(corners, edges, |_| crossed = true);
-    let Some(all) = all.ok().filter(|_| !crossed) else { return fans(polygon) };
-    // From the hull inwards, each edge of the polygon that is crossed leads from outside to inside or back.
+    match all {
+        Ok(all) if !crossed => within_edges(&all),
+        Ok(all) => closed(within(polygon, &all), &rim),
+        Err(_) => closed(Vec::new(), &rim),
+    }
+}
+
+/// Triangles inside: from the hull inwards, each edge of the polygon that is crossed leads from outside to inside or back.
+fn within_edges(all: &ConstrainedDelaunayTriangulation<Corner>) -> Vec<[usize; 3]> {
     let (mut known, mut inside) = (vec![false; all.num_all_faces()], Vec::new());
     let mut open: Vec<_> = all.convex_hull().map(|edge| (edge.rev(), false)).collect();
     while let Some((edge, was_inside)) = open.pop() {
@@ -69,13 +79,35 @@ pub fn triangulate_by_edges(polygon: &Polygon) -> Vec<[usize; 3]> {
     inside
 }
 
-/// A fan from the first point of each ring: closed, with the area of the polygon, whatever it looks like; its triangles overlap.
-fn fans(polygon: &Polygon) -> Vec<[usize; 3]> {
-    let (mut triangles, mut first) = (Vec::new(), 0);
-    for ring in polygon.rings() {
-        let count = ring.points().len();
-        triangles.extend((2..count).map(|k| [first, first + k - 1, first + k]));
-        first += count;
+/// Triangles whose middle lies inside, where some edges of the polygon are missing.
+fn within(polygon: &Polygon, all: &ConstrainedDelaunayTriangulation<Corner>) -> Vec<[usize; 3]> {
+    let middle = |at: Point2<f64>| DVec2::new(at.x, at.y);
+    let inside = all.inner_faces().filter(|face| polygon.contains(middle(face.center())));
+    inside.map(|face| face.vertices().map(|corner| corner.data().number)).collect()
+}
+
+/// Adds fans until the edges of all triangles together are those of the rim, each in its direction.
+fn closed(mut triangles: Vec<[usize; 3]>, rim: &[[usize; 2]]) -> Vec<[usize; 3]> {
+    // How often each edge is still to be run from its lower end to its higher one, less how often back.
+    let mut missing: BTreeMap<[usize; 2], i32> = BTreeMap::new();
+    let mut run = |[from, to]: [usize; 2], times: i32| {
+        *missing.entry([from.min(to), from.max(to)]).or_default() += if from < to { times } else { -times };
+    };
+    rim.iter().for_each(|edge| run(*edge, 1));
+    triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).for_each(|edge| run(edge, -1));
+    let mut ways: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for ([low, high], times) in missing.into_iter().filter(|([low, high], _)| low != high) {
+        let (from, to) = if times > 0 { (low, high) } else { (high, low) };
+        ways.entry(from).or_default().extend((0..times.abs()).map(|_| to));
+    }
+    // As often as a way leads to a corner, one leads on from it.
+    while let Some((first, mut ends)) = ways.pop_first() {
+        let Some(mut last) = ends.pop() else { continue };
+        ways.insert(first, ends);
+        while let Some(next) = ways.get_mut(&last).and_then(Vec::pop).filter(|next| *next != first) {
+            triangles.push([first, last, next]);
+            last = next;
+        }
     }
     triangles
 }

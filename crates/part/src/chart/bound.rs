@@ -72,8 +72,11 @@ fn side_of(cylinder: &Cylinder, mesh: &Mesh) -> Mesh {
     let height = |p: DVec3| cylinder.around(p).height;
     // A straight edge leaves the cylinder by less than the tolerance, and none of those that are cut spans much of the circle.
     let step = (8.0 * cylinder.radius * TOLERANCE).sqrt().min(MOST_OF_RADIUS * cylinder.radius);
-    let may_cross = |a: DVec3, b: DVec3| height(a.midpoint(b)).abs() <= a.distance(b) / 2.0;
-    let Ok(fine) = warp::divided_where(mesh, step, &Task::new(), may_cross) else { return Mesh::default() };
+    // A triangle is covered by the balls over its edges, and no point of it lies farther from the axis than its corners.
+    let is_out = |p: DVec3| cylinder.off_axis(p) > cylinder.radius + IN_IT;
+    let may_cross = |a: DVec3, b: DVec3| (is_out(a) || is_out(b)) && height(a.midpoint(b)).abs() <= a.distance(b) / 2.0;
+    // The cut through a triangle is at most as long as its two edges that are cut.
+    let Ok(fine) = warp::divided_where(mesh, step / 2.0, &Task::new(), may_cross) else { return Mesh::default() };
     let cut = Cut::new(cylinder, &fine);
     let kept = fine.vertices.iter().filter(|p| cut.is_above(**p)).count();
     if kept == fine.vertices.len() {
@@ -84,10 +87,12 @@ fn side_of(cylinder: &Cylinder, mesh: &Mesh) -> Mesh {
     }
     let Pieces { vertices, mut kept, face } = pieces(&fine, &cut);
     // The closing face follows the cylinder; its rim is fine enough, and shared with the rest.
-    let spread = vertices.iter().map(|p| cut.flat(*p).extend(0.0)).collect();
+    let spread: Vec<DVec3> = vertices.iter().map(|p| cut.flat(*p).extend(0.0)).collect();
+    let nearest = face.iter().flatten().map(|corner| spread[*corner as usize].length()).fold(f64::MAX, f64::min);
     let spread = Mesh { vertices: spread, triangles: face, ..Mesh::default() };
-    let rounds = |a: DVec3, b: DVec3| cylinder.radius * a.truncate().angle_to(b.truncate()).abs() > LONGER * step;
-    let Ok(face) = warp::divided_where(&spread, 0.0, &Task::new(), rounds) else { return Mesh::default() };
+    let most = LONGER * step / cylinder.radius;
+    let rounds = |a: DVec3, b: DVec3| a.truncate().angle_to(b.truncate()).abs() > most;
+    let Ok(face) = warp::divided_where(&spread, most * nearest, &Task::new(), rounds) else { return Mesh::default() };
     let more = face.vertices[vertices.len()..].iter().map(|p| cut.place(p.truncate()));
     let vertices = vertices.iter().copied().chain(more).collect();
     kept.extend(face.triangles);

@@ -204,3 +204,25 @@ fn a_branch_cut_all_around_has_one_island_a_layer_at_any_angle() {
         }
     }
 }
+
+/// Only what a cylinder really cuts is divided: a bound a little outside its own bar touches the branches alone.
+#[test]
+fn bounds_divide_no_more_than_they_cut() {
+    for turned in [0.0, 37.0] {
+        let bars = tree(&[(90.0, 90.0, 0.0)], turned);
+        let mesh = united(&bars);
+        let [trunk, branch] = [&bars[0], &bars[1]];
+        let part = |bar: &Bar, side: &str| {
+            let [a, t] = [bar.along, bar.from].map(|v| format!("{}/{}/{}", v.x, v.y, v.z));
+            let bound = format!("cylinder:axis={a},through={t},radius={},side={side}", bar.radius + 0.05);
+            bound.parse::<Bound>().unwrap().part_of(&mesh)
+        };
+        for bar in [trunk, branch] {
+            let (inner, outer) = (part(bar, "inner"), part(bar, "outer"));
+            let [volume, count] =
+                [inner.volume() + outer.volume(), (inner.triangles.len() + outer.triangles.len()) as f64];
+            assert!((volume / mesh.volume() - 1.0).abs() < 1e-3, "at {turned}°: {volume}");
+            assert!(count < 100_000.0, "at {turned}°: {count} triangles from {}", mesh.triangles.len());
+        }
+    }
+}

@@ -6,7 +6,7 @@ use planar::triangulate::{triangulate, triangulate_by_edges};
 use planar::{DVec2, Polygon, Ring};
 use proptest::prelude::*;
 use shapes::{config, star, three_holes};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::f64::consts::{SQRT_2, TAU};
 
 fn triangles(polygon: &Polygon) -> Vec<[DVec2; 3]> {
@@ -117,4 +117,46 @@ fn an_edge_run_there_and_back_bounds_nothing() {
     let points: Vec<DVec2> = base.rings().flat_map(|ring| ring.points()).copied().collect();
     let total: f64 = triangulate_by_edges(&base).iter().map(|t| area(&t.map(|i| points[i]))).sum();
     assert!((total - 640.0).abs() < 1e-9, "{total}");
+}
+
+/// Where points of a cut lie on the wrong side of each other by a little, only triangles beside them overlap.
+#[test]
+fn where_edges_cross_the_rest_is_filled_all_the_same() {
+    let circle = |radius: f64, count: u32| -> Vec<DVec2> {
+        (0..count).map(|k| DVec2::from_angle(TAU * f64::from(k) / f64::from(count)) * radius).collect()
+    };
+    for off in [1e-9, 1e-6, 1e-3] {
+        let mut outer = circle(20.0, 200);
+        // A step back along the circle, twice, and points that change places.
+        outer.swap(17, 18);
+        outer.insert(90, outer[88] * (1.0 + off));
+        outer.insert(150, outer[148] * (1.0 - off));
+        let mut hole = circle(0.4, 60);
+        hole.reverse();
+        hole.swap(5, 6);
+        let base = Polygon { outer: Ring::new(outer), holes: vec![Ring::new(hole)] };
+        let points: Vec<DVec2> = base.rings().flat_map(|ring| ring.points()).copied().collect();
+        let triangles = triangulate_by_edges(&base);
+        let areas: Vec<f64> = triangles.iter().map(|t| area(&t.map(|i| points[i]))).collect();
+        let (total, all): (f64, f64) = (areas.iter().sum(), areas.iter().map(|area| area.abs()).sum());
+        assert!((total / base.area() - 1.0).abs() < 1e-9, "{off} mm: {total} for {}", base.area());
+        assert!(all - total < 2.0, "{off} mm: {} mm² lie twice", all - total);
+        let covers = |t: &[usize; 3]| {
+            let [a, b, c] = t.map(|i| points[i]);
+            [a.perp_dot(b), b.perp_dot(c), c.perp_dot(a)].into_iter().all(|side| side > 0.0)
+        };
+        assert!(!triangles.iter().any(covers), "{off} mm: a triangle covers the hole");
+        let mut edges = HashMap::new();
+        let mut run = |[from, to]: [usize; 2], times: i32| {
+            *edges.entry([from.min(to), from.max(to)]).or_insert(0) += if from < to { times } else { -times };
+        };
+        triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).for_each(|edge| run(edge, 1));
+        let mut first = 0;
+        for ring in base.rings() {
+            let count = ring.points().len();
+            (0..count).for_each(|k| run([first + k, first + (k + 1) % count], -1));
+            first += count;
+        }
+        assert!(edges.values().all(|times| *times == 0), "{off} mm: an edge is open");
+    }
 }
