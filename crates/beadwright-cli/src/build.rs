@@ -1,9 +1,9 @@
 //! `beadwright build`: a plan welded in the height model, with errors and feedback.
 
 use crate::{adapt, model, profile, program, progress};
+use anyhow::Context;
 use beadwright::adapt::Feedback;
 use beadwright::build::{self, Built, Errors, Heat, Settings, page};
-use beadwright::chart::Chart;
 use beadwright::files::write_file;
 use beadwright::heat::plate;
 use beadwright::layer::Layer;
@@ -150,6 +150,7 @@ impl Arguments {
 /// Name, layers and profile of a plan, or of a model that is planned.
 fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Layer>, Profile)> {
     let (path, wanted): (&Path, _) = (&arguments.file, &arguments.wanted);
+    let context = || path.display().to_string();
     if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("json")) {
         let source = program::Source::open(path)?;
         let profile = source.profile(wanted)?;
@@ -161,7 +162,7 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
              --heat.",
             path.display()
         );
-        return Ok((plan.header.part.clone(), even(&plan.layers, &profile)?, profile));
+        return Ok((plan.header.part.clone(), build::ready(&plan.layers, &profile).with_context(context)?, profile));
     }
     let profile = profile::load(wanted.profile.as_deref().unwrap_or(profile::USUAL), &wanted.set)?;
     let law = profile.bead.by_heat;
@@ -174,23 +175,7 @@ fn layers(arguments: &Arguments, task: &Task) -> anyhow::Result<(String, Vec<Lay
     let mut profile = choice::choose(&part, &profile, false, task)?.profile;
     let plan = plan::plan(&model.part(), &part, &profile, task)?;
     profile.bead.by_heat = law;
-    Ok((plan.header.part, even(&plan.layers, &profile)?, profile))
-}
-
-/// Layers as their chart shows them.
-fn even(layers: &[Layer], profile: &Profile) -> anyhow::Result<Vec<Layer>> {
-    anyhow::ensure!(
-        !profile.layers.charts().any(Chart::goes_around),
-        "unrolled layers around an axis do not lie over one another, so this command cannot build them (layers.chart)"
-    );
-    if let Some(layer) = layers.iter().find(|layer| layer.half.is_some()) {
-        anyhow::bail!(
-            "layer {}: the outer side of a bend takes two layers where the inner side takes one, which this command cannot \
-             build. Bend the guide less, or raise layers.max_height.",
-            layer.index + 1
-        );
-    }
-    Ok(layers.iter().map(|layer| plan::even(layer, profile).into_owned()).collect())
+    Ok((plan.header.part, build::ready(&plan.layers, &profile).with_context(context)?, profile))
 }
 
 /// The plate of a plan, and what heat does to its beads.

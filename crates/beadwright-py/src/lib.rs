@@ -10,6 +10,7 @@
 //! | `save` | the files of a plan, byte for byte those of the command |
 //! | `program` | programs from any source, read back as layers |
 //! | `judge` | what layers would build: height fields, comparisons |
+//! | `scan`, `build` | scans compared with the part and followed by layers; plans welded in the height model |
 //! | `heat`, `reach` | how warm the metal becomes, and whether a robot can weld it |
 //! | `bead_library` | measured beads |
 //!
@@ -17,6 +18,7 @@
 
 mod array;
 mod bead_library;
+mod build;
 mod error;
 mod heat;
 mod judge;
@@ -29,6 +31,7 @@ mod program;
 mod reach;
 mod running;
 mod save;
+mod scan;
 
 use pyo3::prelude::*;
 
@@ -38,6 +41,8 @@ mod _core {
     use crate::array::Array;
     #[pymodule_export]
     use crate::bead_library::{BeadLibrary, demonstration_csv};
+    #[pymodule_export]
+    use crate::build::{Builds, build};
     #[pymodule_export]
     use crate::heat::{Heat, heat};
     #[pymodule_export]
@@ -51,9 +56,11 @@ mod _core {
     #[pymodule_export]
     use crate::profile::{Profile, profile_names, strategy_names};
     #[pymodule_export]
-    use crate::program::{language, may_be_module, named_profile, simulate};
+    use crate::program::{faults, language, may_be_module, named_profile, simulate};
     #[pymodule_export]
     use crate::reach::{Reach, cell_names, cell_text, reach};
+    #[pymodule_export]
+    use crate::scan::{Adapted, Deviation, Scan, adapt, built_deviation, deviation};
 
     /// Version of the library.
     #[pymodule_export]

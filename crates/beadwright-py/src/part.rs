@@ -71,9 +71,19 @@ impl Part {
     }
 }
 
-fn unit_of(unit: &str) -> PyResult<Units> {
+/// A unit by its name.
+pub(crate) fn unit_of(unit: &str) -> PyResult<Units> {
     let found = Units::ALL.iter().find(|(name, _)| *name == unit).map(|(_, units)| *units);
     found.ok_or_else(|| raise(&format!("\"{unit}\" is not a unit; use mm, cm, m or in."), Some("units"), None))
+}
+
+impl Part {
+    /// The mesh of a solid.
+    pub(crate) fn solid(&self) -> PyResult<&Mesh> {
+        let curves =
+            || raise("this is a wall given by curves, and it has no surface to compare.", Some(&self.name), None);
+        self.part.mesh().ok_or_else(curves)
+    }
 }
 
 /// The size of a model whose unit was not given, before it is turned.

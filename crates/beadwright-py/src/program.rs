@@ -32,6 +32,55 @@ pub(crate) fn named_profile(text: &str) -> Option<&'static str> {
     read_back::named_profile(text)
 }
 
+/// Reads a program; `module` (Python) gives the text of a module by its name, or none.
+fn read_back(
+    py: Python<'_>,
+    name: &str,
+    text: &str,
+    module: &Py<PyAny>,
+    profile: &Profile,
+    reading: Reading,
+    part: Option<&Part>,
+) -> PyResult<ReadBack> {
+    let profile = &*profile.profile;
+    let mesh = part.and_then(|part| part.part.mesh());
+    let mut raised = None;
+    let mut find = |name: &str| {
+        let found = Python::attach(|py| module.call1(py, (name,))?.extract::<Option<String>>(py));
+        found.unwrap_or_else(|error| {
+            raised = Some(error);
+            None
+        })
+    };
+    let (arc_on, arc_off, bead_width, profile_chosen) = reading;
+    let reading = read_back::Reading { arc_on, arc_off, bead_width, profile_chosen };
+    let back = Running::new(None, None)
+        .run(py, Some(name), |task| ReadBack::program(name, text, &mut find, profile, &reading, mesh, task));
+    raised.map_or(back, Err)
+}
+
+/// The dangerous lines of a program, and those that a controller would refuse, each with its sentence.
+#[pyfunction]
+pub(crate) fn faults<'py>(
+    py: Python<'py>,
+    name: &str,
+    text: &str,
+    module: Py<PyAny>,
+    profile: &Profile,
+    reading: Reading,
+) -> PyResult<Vec<(Bound<'py, PyAny>, String)>> {
+    let value = |fault: &Fault| {
+        let module = fault.place.as_ref().and_then(|place| place.module.clone());
+        let line = fault.place.as_ref().map(|place| place.line);
+        serde_json::json!({
+            "kind": fault.kind.name, "module": module, "line": line, "count": fault.count, "text": fault.text,
+            "remedy": fault.kind.remedy,
+        })
+    };
+    let back = read_back(py, name, text, &module, profile, reading, None)?;
+    back.faults.iter().map(|fault| Ok((pythonize::pythonize(py, &value(fault))?, fault.to_string()))).collect()
+}
+
 /// Reads a program and judges what it would build; `module` (Python) gives the text of a module by its name, or none.
 #[pyfunction]
 #[pyo3(signature = (name, text, module, profile, reading, part, grid, threads, progress))]
@@ -48,24 +97,7 @@ pub(crate) fn simulate<'py>(
     threads: Option<usize>,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Judged> {
-    let profile = &*profile.profile;
-    let mesh = part.and_then(|part| part.part.mesh());
-    let mut raised = None;
-    let mut find = |name: &str| {
-        let found = Python::attach(|py| module.call1(py, (name,))?.extract::<Option<String>>(py));
-        found.unwrap_or_else(|error| {
-            raised = Some(error);
-            None
-        })
-    };
-    let (arc_on, arc_off, bead_width, profile_chosen) = reading;
-    let reading = read_back::Reading { arc_on, arc_off, bead_width, profile_chosen };
-    let back = Running::new(threads, None)
-        .run(py, Some(name), |task| ReadBack::program(name, text, &mut find, profile, &reading, mesh, task));
-    if let Some(error) = raised {
-        return Err(error);
-    }
-    let back = back?;
+    let back = read_back(py, name, text, &module, profile, reading, part)?;
     let settings = back.deposit_settings(grid).map_err(|error| raise(&error.to_string(), Some("grid"), None))?;
     let ReadBack { layers, totals, notes, faults, .. } = back;
     let entry = Running::new(threads, progress)

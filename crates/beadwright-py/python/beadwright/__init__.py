@@ -11,22 +11,29 @@ from beadwright._core import VERSION as __version__
 from beadwright._errors import BeadwrightError
 from beadwright._progress import Progress
 from beadwright._bead import Bead, BeadLibrary, demonstration_csv
+from beadwright._build import Builds, Noise, build
 from beadwright._executors import LocalExecutor, RayExecutor
 from beadwright._heat import Heat, heat
-from beadwright._judging import Comparison, HeightField, Judged, compare, height_field, simulate
+from beadwright._judging import Comparison, Fault, HeightField, Judged, check, compare, height_field, simulate
 from beadwright._layer import Finding, Island, Layer, LayerWarning, Pass
 from beadwright._metrics import Metrics
+from beadwright._page import Page
 from beadwright._part import Part, examples
 from beadwright._plan import Plan, plan
 from beadwright._profile import Profile, profiles, strategies
 from beadwright._robot import Reach, ReachFinding, Trajectory, cells, reach
+from beadwright._scan import Adapted, Deviation, adapt, deviation
 from beadwright._study import Study, study
 
 __all__ = [
+    "Adapted",
     "Bead",
     "BeadLibrary",
     "BeadwrightError",
+    "Builds",
     "Comparison",
+    "Deviation",
+    "Fault",
     "Finding",
     "Heat",
     "HeightField",
@@ -36,6 +43,8 @@ __all__ = [
     "LayerWarning",
     "LocalExecutor",
     "Metrics",
+    "Noise",
+    "Page",
     "Part",
     "Pass",
     "Plan",
@@ -47,9 +56,13 @@ __all__ = [
     "Study",
     "Trajectory",
     "__version__",
+    "adapt",
+    "build",
     "cells",
+    "check",
     "compare",
     "demonstration_csv",
+    "deviation",
     "examples",
     "heat",
     "height_field",

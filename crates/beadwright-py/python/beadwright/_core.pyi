@@ -10,8 +10,11 @@ _Step = Callable[[str, float], object] | None
 _Placing = tuple[Any, ...]
 
 __all__ = [
+    "Adapted",
     "Array",
     "BeadLibrary",
+    "Builds",
+    "Deviation",
     "Heat",
     "Judged",
     "Layer",
@@ -20,13 +23,19 @@ __all__ = [
     "Plan",
     "Profile",
     "Reach",
+    "Scan",
     "VERSION",
+    "adapt",
+    "build",
+    "built_deviation",
     "cell_names",
     "cell_text",
     "compare",
     "demonstration_csv",
+    "deviation",
     "example_names",
     "example_stl",
+    "faults",
     "heat",
     "height_field",
     "judge",
@@ -204,6 +213,67 @@ def simulate(
     threads: int | None,
     progress: _Step,
 ) -> Judged: ...
+
+def faults(
+    name: str,
+    text: str,
+    module: Callable[[str], str | None],
+    profile: Profile,
+    reading: tuple[list[str], list[str], float | None, bool],
+) -> list[tuple[dict[str, Any], str]]: ...
+
+@final
+class Scan:
+    @staticmethod
+    def read(place: str, bytes: bytes, units: str) -> Scan: ...
+    @staticmethod
+    def of(points: Buffer) -> Scan: ...
+    @property
+    def format(self) -> str: ...
+    @property
+    def points(self) -> Array: ...
+
+@final
+class Deviation:
+    @property
+    def values(self) -> dict[str, Any]: ...
+    @property
+    def distances(self) -> Array: ...
+
+def deviation(part: Part, scan: Scan, allowance: float, threads: int | None, progress: _Step) -> Deviation: ...
+def built_deviation(part: Part, plan: Plan, threads: int | None, progress: _Step) -> Deviation: ...
+
+@final
+class Adapted:
+    @property
+    def values(self) -> dict[str, Any]: ...
+    @property
+    def sentences(self) -> list[str]: ...
+    @property
+    def layers(self) -> list[Layer]: ...
+    def save(self, folder: str, names: list[str]) -> list[str]: ...
+
+def adapt(
+    plan: Plan, scan: Scan, number: int, align: str, window: tuple[float, float], spacing: float | None
+) -> Adapted: ...
+
+@final
+class Builds:
+    @property
+    def values(self) -> list[dict[str, Any]]: ...
+    @property
+    def html(self) -> str: ...
+
+def build(
+    plan: Plan,
+    feedback: list[str],
+    noise: tuple[float, float, float, float, int | None, float],
+    seed: int,
+    window: tuple[float, float],
+    spacing: float | None,
+    threads: int | None,
+    progress: _Step,
+) -> Builds: ...
 
 @final
 class Heat:

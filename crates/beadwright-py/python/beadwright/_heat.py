@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from beadwright import _core
 from beadwright._array import floats
 from beadwright._progress import Progress, steps
+from beadwright._page import Page
 from beadwright._plan import Plan
 
 if TYPE_CHECKING:
@@ -42,9 +43,9 @@ class Heat:
         """
         return floats(self._inner.along(layer, number))
 
-    def html(self) -> str:
+    def html(self) -> Page:
         """A page with pictures of the layers."""
-        return self._inner.html
+        return Page(self._inner.html)
 
     def __repr__(self) -> str:
         hottest = max((start for layer in self.starts for start in layer), default=0.0)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from beadwright import _core
 from beadwright._array import floats
 from beadwright._errors import BeadwrightError
+from beadwright._page import Page
 from beadwright._progress import Progress, steps
 from beadwright._plan import Model, Plan, Process, part_of, profile_of
 from beadwright._profile import strategies as all_strategies
@@ -58,9 +60,9 @@ class Judged:
         """Its row of a comparison; the headings give the units."""
         return dict(self._inner.columns)
 
-    def html(self) -> str:
+    def html(self) -> Page:
         """A page with figures and height fields."""
-        return _core.page(self.name, "Judged by the deposit model.", [self._inner])
+        return Page(_core.page(self.name, "Judged by the deposit model.", [self._inner]))
 
     def __repr__(self) -> str:
         return f"<Judged {self.name}: void {self.row['void %']:.2f} %, overfill {self.row['overfill %']:.2f} %>"
@@ -89,9 +91,9 @@ class Comparison(Sequence[Judged]):
         rows = [{"name": entry.name, **entry.row} for entry in self._entries]
         return {name: [row[name] for row in rows] for name in rows[0]} if rows else {}
 
-    def html(self) -> str:
+    def html(self) -> Page:
         """A page with the table and the height fields side by side."""
-        return _core.page(self.title, "", [entry._inner for entry in self._entries])
+        return Page(_core.page(self.title, "", [entry._inner for entry in self._entries]))
 
     def _repr_html_(self) -> str:
         table = self.table()
@@ -110,6 +112,18 @@ class HeightField(NamedTuple):
     """Where the columns lie, mm."""
     y: Floats
     """Where the rows lie, mm."""
+
+    def show(self, **kwargs: Any) -> Any:
+        """A picture of the heights by matplotlib, seen from above, with a scale in mm; returns its axes. ``kwargs`` are those of
+        ``Axes.pcolormesh``.
+        """
+        import matplotlib.pyplot as plt
+
+        _, axes = plt.subplots()
+        picture = axes.pcolormesh(self.x, self.y, self.heights, **{"cmap": "viridis", "shading": "nearest", **kwargs})
+        axes.figure.colorbar(picture, ax=axes, label="height, mm")
+        axes.set(xlabel="x, mm", ylabel="y, mm", aspect="equal")
+        return axes
 
 
 def compare(
@@ -170,6 +184,50 @@ def simulate(
     with steps(progress) as step:
         core = _core.simulate(name, text, module, wanted._inner, reading, solid, grid, threads, step)
     return Judged(core)
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A line of a program that would be dangerous on a controller, or that it would refuse."""
+
+    kind: str
+    """Name of the check."""
+    module: str | None
+    """The module in which it is; none in the program itself."""
+    line: int | None
+    """The first such line, counted from 1."""
+    count: int
+    """How many such lines this one stands for."""
+    text: str
+    """What is wrong."""
+    remedy: str
+    """What to do."""
+    sentence: str
+    """Place and words for people."""
+
+    def __str__(self) -> str:
+        return self.sentence
+
+
+def check(
+    program: str | os.PathLike[str],
+    *,
+    profile: Process | None = None,
+    modules: Mapping[str, str] | None = None,
+    arc_on: Sequence[str] = (),
+    arc_off: Sequence[str] = (),
+    bead_width: float | None = None,
+) -> list[Fault]:
+    """Lines of a program from any source that would be dangerous on a controller, or that it would refuse; empty where
+    nothing is found. The arguments are those of :func:`simulate`. For a plan, use :meth:`Plan.findings`.
+
+    Raises :class:`BeadwrightError`.
+    """
+    name, text, module = _source(program, modules)
+    wanted = profile_of(profile if profile is not None else _core.named_profile(text) or "cmt-al2319-kuka")
+    reading = (list(arc_on), list(arc_off), bead_width, profile is not None)
+    found = _core.faults(name, text, module, wanted._inner, reading)
+    return [Fault(**value, sentence=sentence) for value, sentence in found]
 
 
 def height_field(plan: Plan, layer: int, grid: float | None = None) -> HeightField:

@@ -8,12 +8,14 @@ from functools import cached_property
 from html import escape
 from io import BytesIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, TypeAlias
 
 from beadwright import _core
 from beadwright._progress import Progress, steps
 from beadwright._layer import Finding, Layer, LayerWarning, Pass
 from beadwright._metrics import Metrics
+from beadwright._page import Page
 from beadwright._part import Part
 from beadwright._profile import Profile
 
@@ -143,6 +145,16 @@ class Plan:
         with steps(progress) as step:
             names = self._inner.save(os.fspath(folder), dialects, deposit, allow_findings, threads, step)
         return [Path(folder) / name for name in names]
+
+    def show(self, *, deposit: bool = True, threads: int | None = None, progress: Progress = None) -> Page:
+        """The report, with its layers in 3-D: a notebook shows it in a frame. Without ``deposit`` the deposit model is left out.
+
+        Raises :class:`BeadwrightError`.
+        """
+        with TemporaryDirectory() as folder, steps(progress) as step:
+            # Pictures only: no program leaves the folder, so findings do not matter.
+            self._inner.save(folder, [], deposit, True, threads, step)
+            return Page((Path(folder) / "report.html").read_text("utf-8"))
 
     def export(self, path: str | os.PathLike[str]) -> None:
         """Writes the beads for other programs; the extension gives the format: .csv, .parquet, .vtp, .3mf, .stl or .glb."""

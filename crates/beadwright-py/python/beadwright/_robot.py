@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from beadwright import _core
 from beadwright._array import floats
 from beadwright._errors import BeadwrightError
+from beadwright._page import Page
 from beadwright._plan import Plan
 
 if TYPE_CHECKING:
@@ -66,9 +67,9 @@ class Reach:
         arrays = self._inner.trajectory
         return None if arrays is None else Trajectory(floats(arrays[0]), floats(arrays[1]))
 
-    def html(self) -> str:
+    def html(self) -> Page:
         """A page with joint angles and margins over the program."""
-        return self._inner.html
+        return Page(self._inner.html)
 
     def __repr__(self) -> str:
         margin = "nothing reached" if self.least_margin is None else f"least margin {self.least_margin:.1f}°"

@@ -10,8 +10,10 @@
 //! | `levels` | how many layers follow, and where they lie |
 //! | `correct` | the next layer: metal and torch height by place |
 //! | `follow` | all layers that follow |
+//! | `adapted` | all of these in order, and the files of the layers that follow |
 //! | [`page`] | predicted, measured and difference as a page |
 
+mod adapted;
 mod align;
 #[doc(hidden)]
 pub mod area;
@@ -23,6 +25,7 @@ pub mod scan;
 mod see;
 mod surface;
 
+pub use adapted::{AdaptError, Adapted, Unfinished};
 pub use align::{Align, AlignError, Aligned, align};
 pub(crate) use correct::next;
 pub use correct::{Feedback, Rules, pieces};

@@ -13,11 +13,13 @@ use crate::adapt::area::core;
 use crate::adapt::page::relief;
 use crate::adapt::{Feedback, Levels, Rules, Spread, Surface, next};
 use crate::bead::BeadByHeat;
+use crate::chart::Chart;
 use crate::deposit::{Nominal, Picture};
 use crate::heat;
 use crate::layer::Layer;
 use crate::pass::PassKind;
-use crate::plan::warm::along;
+use crate::plan::{self, warm::along};
+use crate::profile::Profile;
 use crate::task::{Cancelled, Stage, Task};
 
 /// How a plan is welded.
@@ -88,6 +90,35 @@ impl Built {
     pub fn rms(&self) -> f64 {
         self.end.rms / self.layer_height
     }
+}
+
+/// Why layers cannot be built in the height model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// Layers around an axis.
+    #[error("unrolled layers around an axis do not lie over one another, so they cannot be built here (layers.chart).")]
+    Around,
+    /// A bend whose outer side takes more layers.
+    #[error(
+        "layer {0}: the outer side of a bend takes two layers where the inner side takes one, which cannot be built here. Bend \
+         the guide less, or raise layers.max_height."
+    )]
+    Half(usize),
+}
+
+/// Layers as their chart shows them, ready to be built.
+///
+/// # Errors
+/// [`BuildError`] for layers that do not lie over one another.
+pub fn ready(layers: &[Layer], profile: &Profile) -> Result<Vec<Layer>, BuildError> {
+    if profile.layers.charts().any(Chart::goes_around) {
+        return Err(BuildError::Around);
+    }
+    if let Some(layer) = layers.iter().find(|layer| layer.half.is_some()) {
+        return Err(BuildError::Half(layer.index + 1));
+    }
+    Ok(layers.iter().map(|layer| plan::even(layer, profile).into_owned()).collect())
 }
 
 /// Maximum number of layers of a build, as a multiple of the planned number: if metal is lost again and again, it never
