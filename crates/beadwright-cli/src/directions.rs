@@ -17,6 +17,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DEG", default_value_t = 45.0, value_parser = parse_lean)]
     lean: f64,
     /// Largest angle between a direction and the vertical, degrees: what the positioner can tilt, or the torch can lean.
+    /// Beyond 90 only branches on branches go, in layers around the one that carries them.
     #[arg(long, value_name = "DEG", default_value_t = 90.0, value_parser = parse_tilt)]
     tilt: f64,
     /// Which of the divisions found to write, counted from 1.
@@ -34,7 +35,7 @@ fn parse_lean(text: &str) -> Result<f64, String> {
 }
 
 fn parse_tilt(text: &str) -> Result<f64, String> {
-    degrees(text, 5.0..=90.0)
+    degrees(text, 5.0..=180.0)
 }
 
 fn degrees(text: &str, range: std::ops::RangeInclusive<f64>) -> Result<f64, String> {
@@ -101,6 +102,9 @@ fn sentence(division: &Division) -> String {
     } else {
         ""
     };
-    let Division { hanging, tilt, .. } = division;
-    format!("{bodies}{stock}: {:.1} cm² overhang, layers at up to {tilt:.0}° from level", hanging / 100.0)
+    let Division { hanging, tilt, lean, .. } = division;
+    let leans = lean.map_or(String::new(), |lean| {
+        format!(", walls that lean by up to {lean:.0}° (square to them, layers would begin with no room for a bead)")
+    });
+    format!("{bodies}{stock}: {:.1} cm² overhang, layers at up to {tilt:.0}° from level{leans}", hanging / 100.0)
 }

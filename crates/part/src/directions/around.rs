@@ -44,7 +44,7 @@ pub(super) fn around(whole: &State, judge: &Judge) -> Option<Division> {
     // All around a horizontal axis, layers also hang overhead.
     let lies = lies(hub.axis);
     let tilt = 90.0 + lies.min(180.0 - lies);
-    (BETTER * hanging < whole.hanging[0]).then(|| Division { pieces: vec![piece], hanging, tilt })
+    (BETTER * hanging < whole.hanging[0]).then(|| Division { pieces: vec![piece], hanging, tilt, lean: None })
 }
 
 /// Where layers are cut open, °.

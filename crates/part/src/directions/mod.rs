@@ -39,7 +39,7 @@ pub struct Settings {
     /// Largest angle between a wall and the direction in which it is built, °.
     pub lean: f64,
     /// Largest angle between a build direction and the vertical, °. Layers around a hub need 90, because the part turns
-    /// about the hub's axis.
+    /// about the hub's axis; more than that hangs the part over.
     pub tilt: f64,
     /// Width of a bead, mm: overhangs of a few beads are ignored.
     pub bead: f64,
@@ -54,6 +54,9 @@ pub struct Division {
     pub hanging: f64,
     /// Largest angle between a direction and the vertical, °.
     pub tilt: f64,
+    /// Largest angle between a wall and the direction in which it is built, °, where a tube has no better layers than those
+    /// from which it leans more than [`Settings::lean`].
+    pub lean: Option<f64>,
 }
 
 /// A piece of a part.
@@ -189,7 +192,7 @@ fn tube(mesh: &Mesh, judge: &Judge, whole: &State, task: &Task) -> Result<Option
     let chart = Chart::Guide(Arc::new(guide));
     let piece = Piece { chart, within: Vec::new(), also: Vec::new(), on_stock: false };
     let fits = tilt <= judge.settings.tilt && hanging < BETTER * whole.hanging[0];
-    Ok(fits.then(|| Division { pieces: vec![piece], hanging, tilt }))
+    Ok(fits.then(|| Division { pieces: vec![piece], hanging, tilt, lean: None }))
 }
 
 /// Position of a point relative to a line through points.
@@ -228,7 +231,7 @@ impl State {
         let within = self.cuts.into_iter().map(Bound::Plane).collect();
         let trunk = Piece { chart: Chart::default(), within, also: Vec::new(), on_stock: false };
         let pieces = std::iter::once(trunk).chain(self.pieces.into_iter().rev()).collect();
-        Division { pieces, hanging: self.hanging.iter().sum(), tilt }
+        Division { pieces, hanging: self.hanging.iter().sum(), tilt, lean: None }
     }
 }
 

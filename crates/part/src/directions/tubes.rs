@@ -3,7 +3,8 @@
 //! Cylinders are found by pairs of surface samples, whose normals both meet the axis (as in RANSAC by Schnabel et al.
 //! 2007), and made better by all the samples that lie on them. A branch goes on in the layers of the tube that carries it
 //! if it leans no more from them than a wall may. Otherwise its layers lie around that tube, so that the first is as wide
-//! as all others.
+//! as all others. Layers square to the branch come last: the first of them are crescents beside the tube, mostly with no
+//! room for a bead, so a wall may rather lean somewhat more.
 
 use super::around::{is_round, middle};
 use super::samples::{FINE, Sample, area};
@@ -44,6 +45,8 @@ const FITS: usize = 4;
 const POWERS: usize = 60;
 /// Sine of the least angle between a branch and its carrier.
 const FLATTEST: f64 = 0.3;
+/// A tube leans at most this much from its layers, °: of 2 mm layers and 7 mm beads, half a bead then lies on the one below.
+const MOST_LEAN: f64 = 60.0;
 /// Directions that are found may lie this much beyond the largest tilt, °.
 const BEYOND: f64 = 1.0;
 /// Pieces of one part may lie this far over their bounds, mm.
@@ -68,17 +71,20 @@ pub(super) fn tubes(whole: &State, judge: &Judge) -> Option<Division> {
         }
         next += 1;
     }
-    let Tree { pieces, tilt, .. } = tree;
+    let Tree { pieces, tilt, lean, .. } = tree;
     if pieces.is_empty() || !open.is_empty() {
         return None;
     }
     let hangs = |sample: &&Sample| {
         let own = pieces.iter().find(|piece| piece.has(sample.place, OVER));
-        !judge.stands(sample, judge.table()) && own.is_none_or(|own| judge.hangs(sample, stacked(own, sample.place)))
+        let hangs = |up: DVec3| {
+            if lean > 0.0 { judge.hangs_beyond(lean + BEYOND, sample, up) } else { judge.hangs(sample, up) }
+        };
+        !judge.stands(sample, judge.table()) && own.is_none_or(|own| hangs(stacked(own, sample.place)))
     };
     let hanging = area(whole.samples.iter().filter(hangs));
     let fits = tilt <= judge.settings.tilt + BEYOND && BETTER * hanging < whole.hanging[0];
-    fits.then_some(Division { pieces, hanging, tilt })
+    fits.then_some(Division { pieces, hanging, tilt, lean: (lean > 0.0).then_some(lean) })
 }
 
 /// A straight tube or bar.
@@ -207,6 +213,8 @@ struct Tree {
     pieces: Vec<Piece>,
     /// Largest angle between a direction in which layers are stacked and the vertical, °.
     tilt: f64,
+    /// Largest angle between a tube and its layers where that is more than it should be, °; 0 if it is nowhere.
+    lean: f64,
 }
 
 impl Tree {
@@ -217,9 +225,7 @@ impl Tree {
         self.pieces.push(Piece { chart: Chart::default(), within, also: Vec::new(), on_stock: false });
     }
 
-    /// A tube on a carrier, beside what has grown in much the same direction. A wall may lean: if the tube leans no more
-    /// from the layers of its carrier, it goes on in them; if it leans no more from layers around the carrier, it gets
-    /// those, whose first is as wide as all others. Otherwise its layers are square to it.
+    /// A tube on a carrier, beside what has grown in much the same direction, in the layers that [`Tree::layers`] chooses.
     fn grow(&mut self, carrier: &Grown, tube: Tube, up: DVec3, judge: &Judge) {
         let (own, other) = nearest(&tube, &carrier.tube);
         let start = tube.through + tube.axis * own;
@@ -228,30 +234,62 @@ impl Tree {
         let beside = |other: &&Grown| other.carried && other.up.dot(up) > 0.0 && other.tube.touches(&tube);
         let outside = self.grown.iter().filter(beside).map(|other| other.tube.outside());
         let mut within: Vec<Bound> = std::iter::once(tube.inside()).chain(outside).collect();
-        let leans = |way: DVec3| way.angle_between(up).to_degrees() > judge.settings.lean;
-        let (away, below) = (up.reject_from_normalized(carrier.tube.axis), &self.pieces[carrier.piece]);
-        let goes_on = ![start, tip].into_iter().any(|p| leans(stacked(below, p)));
-        let mut piece = self.pieces.len();
-        if goes_on {
-            // A little into the carrier, so that they are one.
-            within.push(Bound::Cylinder(carrier.tube.surface(Side::Outer, -THICKER)));
-            piece = carrier.piece;
-            self.pieces[piece].also.push(within);
-        } else {
-            let around = !leans(away) && lies(away) <= judge.settings.tilt + BEYOND;
-            let side = if around { away.normalize() } else { up };
-            let (chart, last) = if around {
-                let half = Plane { origin: carrier.tube.through + carrier.tube.axis * other, up: side };
-                (carrier.tube.around(side), Bound::Plane(half.rounded()))
-            } else {
-                (Chart::Plane(Plane { origin: start, up }.rounded()), carrier.tube.outside())
-            };
-            within.push(last);
-            self.tilt = self.tilt.max(lies(side));
-            self.pieces.push(Piece { chart, within, also: Vec::new(), on_stock: false });
+        let away = up.reject_from_normalized(carrier.tube.axis).normalize_or(up);
+        let below = &self.pieces[carrier.piece];
+        let on = [start, tip].map(|p| degrees(stacked(below, p), up)).into_iter().fold(0.0, f64::max);
+        let around = Some(degrees(away, up)).filter(|_| lies(away) <= judge.settings.tilt + BEYOND);
+        let (layers, lean) = Layers::of(on, around, judge.settings.lean);
+        if lean > judge.settings.lean {
+            self.lean = self.lean.max(lean);
         }
+        let (side, chart, last) = match layers {
+            Layers::Carriers => {
+                // A little into the carrier, so that they are one.
+                within.push(Bound::Cylinder(carrier.tube.surface(Side::Outer, -THICKER)));
+                self.pieces[carrier.piece].also.push(within);
+                self.grown.push(Grown { tube, up, carried: true, piece: carrier.piece });
+                return;
+            }
+            Layers::Around => {
+                let half = Plane { origin: carrier.tube.through + carrier.tube.axis * other, up: away };
+                (away, carrier.tube.around(away), Bound::Plane(half.rounded()))
+            }
+            Layers::Square => (up, Chart::Plane(Plane { origin: start, up }.rounded()), carrier.tube.outside()),
+        };
+        within.push(last);
+        self.tilt = self.tilt.max(lies(side));
+        let piece = self.pieces.len();
+        self.pieces.push(Piece { chart, within, also: Vec::new(), on_stock: false });
         self.grown.push(Grown { tube, up, carried: true, piece });
     }
+}
+
+/// The layers of a tube on a carrier.
+enum Layers {
+    /// Those of the carrier go on.
+    Carriers,
+    /// Around the carrier: the first is as wide as all others.
+    Around,
+    /// Square to the tube.
+    Square,
+}
+
+impl Layers {
+    /// The first of them from which the tube leans no more than a wall should, `lean`; if it leans more from both kinds that
+    /// begin on all of the carrier, the one from which it leans less, within reason. And how much it leans, °.
+    fn of(carriers: f64, around: Option<f64>, lean: f64) -> (Self, f64) {
+        match around {
+            _ if carriers <= lean => (Self::Carriers, carriers),
+            Some(around) if around <= lean => (Self::Around, around),
+            Some(around) if around < carriers && around <= MOST_LEAN => (Self::Around, around),
+            _ if carriers <= MOST_LEAN => (Self::Carriers, carriers),
+            _ => (Self::Square, 0.0),
+        }
+    }
+}
+
+fn degrees(a: DVec3, b: DVec3) -> f64 {
+    a.angle_between(b).to_degrees()
 }
 
 /// The direction in which the layers of a piece are stacked at a point.

@@ -82,6 +82,11 @@ impl Judge {
         -sample.normal.dot(up) > self.steep
     }
 
+    /// Whether a sample overhangs where walls may lean this much, °.
+    pub(super) fn hangs_beyond(&self, lean: f64, sample: &Sample, up: DVec3) -> bool {
+        -sample.normal.dot(up) > self.steep.max(lean.to_radians().sin())
+    }
+
     pub(super) fn stands(&self, sample: &Sample, base: Plane) -> bool {
         let height = base.up.dot(sample.place - base.origin);
         height.abs() < ON_IT * self.size && -sample.normal.dot(base.up) > FACES_IT
