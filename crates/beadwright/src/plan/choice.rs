@@ -59,6 +59,12 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
                 }
             }
             note = (!named.is_empty()).then(|| format!("{ALL_WALLS} ({}).", named.join(", ")));
+            // What all bodies are filled with is the strategy of the plan.
+            if let Some(Some(only)) = profile.layers.bodies.first().map(|body| body.strategy)
+                && profile.layers.bodies.iter().all(|body| body.strategy == Some(only))
+            {
+                profile.fill.strategy = only;
+            }
         }
         Part::Mesh(import) => {
             if let Some((strategy, predict)) = of_solid(&import.mesh, &profile, task)? {

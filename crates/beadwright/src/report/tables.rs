@@ -11,23 +11,13 @@ use crate::model::RepairReport;
 use crate::number::hours;
 use crate::pass::PassKind;
 use crate::plan::{Header, Summary};
-use crate::profile::{Profile, RasterTurn};
+use crate::profile::{Body, Profile, RasterTurn};
 use glam::DVec2;
 use std::collections::BTreeSet;
 
 /// One sentence about the whole plan.
 pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) -> String {
     let m = &summary.metrics;
-    let (layers, bodies) = (&profile.layers, &profile.layers.bodies);
-    let lie = match bodies.len() {
-        _ if layers.are_level() => String::new(),
-        0 => format!(" Layers lie on {}; each is shown unrolled, and in its place in 3-D.", layers.chart.short()),
-        _ => {
-            let lies: Vec<String> =
-                bodies.iter().map(|body| format!("{} on {}", body.name, body.chart.short())).collect();
-            format!(" Each layer is shown unrolled, and in its place in 3-D: {}.", lies.join("; "))
-        }
-    };
     format!(
         "{} and {} with the {} strategy: {} of bead from {} of {} wire, in {}.{}",
         count(header.extent.layers, "layer", "layers") + &empty(header, m),
@@ -37,8 +27,27 @@ pub(super) fn sentence(header: &Header, summary: &Summary, profile: &Profile) ->
         mass(m.wire_mass_kg),
         escape(&profile.wire.material),
         duration(m.total_time_s),
-        escape(&lie)
+        escape(&lie(profile))
     )
+}
+
+/// How layers lie that are not level; bodies in a row with the same layers are named together.
+fn lie(profile: &Profile) -> String {
+    let (layers, bodies) = (&profile.layers, &profile.layers.bodies);
+    if layers.are_level() {
+        return String::new();
+    }
+    let lies = if bodies.is_empty() {
+        layers.chart.in_words()
+    } else {
+        let same = bodies.chunk_by(|a, b| a.chart.in_words() == b.chart.in_words());
+        let named = |group: &[Body]| {
+            let names: Vec<&str> = group.iter().map(|body| &*body.name).collect();
+            group.first().map(|body| format!("{} ({})", body.chart.in_words(), names.join(", ")))
+        };
+        same.filter_map(named).collect::<Vec<_>>().join("; ")
+    };
+    format!(" Layers lie {lies}. Each is shown unrolled, and in its place in 3-D.")
 }
 
 /// Hours, minutes and seconds, without hours where there are none.

@@ -520,3 +520,21 @@ fn directions_that_are_found_are_planned() {
         assert!(plan.summary.metrics.coverage() > 0.99, "{name}: {}", plan.summary.metrics.coverage());
     }
 }
+
+/// The report does not speak of a loop where there is none.
+#[test]
+fn a_plan_whose_bodies_are_all_walls_names_wall_as_its_strategy() {
+    let mesh = common::tube(30.0, 7.0, 40.0, 0.0);
+    let halves = "[[body]]\nname = \"lower\"\nchart = \"plane:up=0/0/1,through=0/0/0\"\n\
+                  [[body]]\nname = \"upper\"\nchart = \"plane:up=0/0/1,through=0/0/20\"\n";
+    let profile = with_bodies(halves);
+    let choice = plan::choice::choose(&imported(mesh.clone()), &profile, false, &Task::new()).unwrap();
+    assert!(choice.note.is_some_and(|note| note.contains("lower, upper")));
+    let plan = planned(&mesh, &choice.profile).unwrap();
+    assert_eq!(plan.header.strategy, "wall");
+    // One body of another strategy, and the plan keeps its own.
+    let mut mixed = profile;
+    mixed.layers.bodies[0].strategy = Some("contour".parse().unwrap());
+    let choice = plan::choice::choose(&imported(mesh), &mixed, false, &Task::new()).unwrap();
+    assert_eq!(choice.profile.fill.strategy, mixed.fill.strategy);
+}

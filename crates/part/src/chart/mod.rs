@@ -136,6 +136,34 @@ impl Chart {
         }
     }
 
+    /// How its layers lie, for people: `around an axis, from a radius of 28.0 mm`.
+    ///
+    /// ```
+    /// use bead_part::chart::Chart;
+    ///
+    /// assert_eq!(Chart::default().in_words(), "level");
+    /// let leaning: Chart = "plane:up=0/1/1".parse()?;
+    /// assert_eq!(leaning.in_words(), "leaning 45°");
+    /// let around: Chart = "cylinder:axis=z,radius=20,side=inner".parse()?;
+    /// assert_eq!(around.in_words(), "around an axis, inwards from a radius of 20.0 mm");
+    /// # Ok::<(), bead_part::chart::ChartError>(())
+    /// ```
+    pub fn in_words(&self) -> String {
+        match self {
+            Self::Plane(plane) => match plane.up.angle_between(DVec3::Z).to_degrees() {
+                lean if lean < 0.05 => "level".to_owned(),
+                lean => format!("leaning {lean:.0}°"),
+            },
+            Self::Cylinder(cylinder) => {
+                let inwards = if cylinder.side == Side::Inner { "inwards " } else { "" };
+                format!("around an axis, {inwards}from a radius of {:.1} mm", cylinder.radius)
+            }
+            Self::Cone(cone) => format!("around a cone of {:.0}°", 2.0 * cone.half_angle),
+            Self::Guide(guide) => format!("along a guide {:.0} mm long", guide.length()),
+            Self::Surface(_) => "over a surface".to_owned(),
+        }
+    }
+
     /// The layer whose middle is at height `middle`, mm.
     pub fn sheet(&self, middle: f64) -> Sheet<'_> {
         Sheet { chart: self, middle }
