@@ -8,7 +8,7 @@ planned, and what the worst of them leaves open. Meshes, bodies and plans stay i
 With --nodes the parts are not random: a T, a Y at 60 and at 30 degrees, four bars on a trunk, and a node of three at 65 degrees, each as
 it is and turned about z by 37 degrees.
 
-Usage: benches/trees.py [--nodes] [--seed 1] [--count 20] [--output FOLDER] [--binary FILE] [--no-plan]
+Usage: benches/trees.py [--nodes] [--seed 1] [--count 20] [--output FOLDER] [--binary FILE] [--tilt 90] [--no-plan]
 """
 import argparse, json, pathlib, subprocess, time
 import manifold3d, numpy as np
@@ -87,11 +87,11 @@ def save(bars, path):
     path.write_bytes(b"\0" * 80 + np.uint32(len(facets)).tobytes() + facets.tobytes())
 
 
-def tried(binary, name, bars, out, plan):
+def tried(binary, name, bars, out, plan, tilt):
     model, bodies = out / f"{name}.stl", out / f"{name}.bodies.toml"
     save(bars, model)
     began = time.monotonic()
-    found = subprocess.run([binary, "directions", model, "--units", "mm", "-o", bodies], capture_output=True, text=True)
+    found = subprocess.run([binary, "directions", model, "--units", "mm", "--tilt", str(tilt), "-o", bodies], capture_output=True, text=True)
     row = {"part": name, "bars": len(bars), "seconds": time.monotonic() - began, "bodies": "", "why": found.stderr.strip()[:150]}
     if found.returncode or not bodies.exists():
         return row | {"status": f"nothing found ({found.returncode})"}
@@ -117,6 +117,7 @@ def main():
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("trees"))
     parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/beadwright")
     parser.add_argument("--nodes", action="store_true")
+    parser.add_argument("--tilt", type=float, default=90, help="of `directions`, degrees")
     parser.add_argument("--no-plan", action="store_true")
     given = parser.parse_args()
     given.output.mkdir(parents=True, exist_ok=True)
@@ -128,7 +129,7 @@ def main():
     else:
         parts = ((f"tree{seed}", tree(seed)) for seed in range(given.seed, given.seed + given.count))
     for name, bars in parts:
-        rows.append(row := tried(given.binary.resolve(), name, bars, given.output, not given.no_plan))
+        rows.append(row := tried(given.binary.resolve(), name, bars, given.output, not given.no_plan, given.tilt))
         shown = (row.get(column) for column in columns)
         print("| " + " | ".join("" if v is None else f"{v:.2f}" if isinstance(v, float) else str(v) for v in shown) + " |", flush=True)
     planned = [row for row in rows if row["status"] == "planned"]
