@@ -383,6 +383,7 @@ fn run<S: Sink + Send>(
     let mut emitter = Emitter {
         profile,
         sink,
+        middle: extent.seen_from_above().center(),
         torch: None,
         heat,
         memory: order::Memory::default(),
@@ -416,15 +417,25 @@ fn run<S: Sink + Send>(
         }
         ready = filled?;
     }
-    let Emitter { metrics, warnings, points, has_helix, .. } = emitter;
+    let Emitter { metrics, warnings, points, has_helix, memory, .. } = emitter;
     let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
     let forbidden = profile.forbidden().into_iter().chain(forbids).collect();
     let large = profile.check.max_plan_points.filter(|most| points > *most as usize);
     let large = large.map(|most| format!("The plan has {points} points; the limit is {most} (check.max_plan_points)."));
     let asked = profile.fill.around == Some(Around::Helix) && profile.layers.chart.goes_around();
     let open = (asked && !has_helix).then(|| NO_HELIX.to_owned());
-    let notes = large.into_iter().chain(open).chain(profile.notes()).collect();
+    let notes =
+        large.into_iter().chain(open).chain(balanced(memory.detour(), profile)).chain(profile.notes()).collect();
     Ok(Summary { metrics, warnings, notes, forbidden })
+}
+
+/// What it costs to keep heat around the middle of the plate, by travels that are longer by this, mm.
+fn balanced(detour: f64, profile: &Profile) -> Option<String> {
+    let (metres, seconds) = (detour / 1e3, detour / profile.travel.speed);
+    let wanted = profile.order.distortion;
+    wanted.then(|| {
+        format!("Travels are {metres:.1} m longer, so that heat stays around the middle of the plate (order.distortion): {seconds:.0} s.")
+    })
 }
 
 /// Why there is no helix, though one was asked for.
