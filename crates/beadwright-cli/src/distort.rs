@@ -82,6 +82,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let source = program::Source::open(&arguments.plan)?;
     let path = arguments.plan.display();
     anyhow::ensure!(source.plan().is_some(), "{path}: give the plan.json of the program");
+    let idle = arguments.compensate.is_none() && arguments.placing.moves();
+    anyhow::ensure!(
+        !idle,
+        "--units, --scale, --turn, --shift and the like place the part that --compensate names; name it"
+    );
     let profile = source.profile(&arguments.wanted)?;
     let (task, bar) = progress::task()?;
     let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
