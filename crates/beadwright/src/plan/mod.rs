@@ -429,12 +429,14 @@ fn run<S: Sink + Send>(
     Ok(Summary { metrics, warnings, notes, forbidden })
 }
 
-/// What it costs to keep heat around the middle of the plate, by travels that are longer by this, mm.
+/// What it costs to keep heat around the middle of the plate: `detour` is how much longer travels became, mm.
 fn balanced(detour: f64, profile: &Profile) -> Option<String> {
-    let (metres, seconds) = (detour / 1e3, detour / profile.travel.speed);
-    let wanted = profile.order.distortion;
-    wanted.then(|| {
-        format!("Travels are {metres:.1} m longer, so that heat stays around the middle of the plate (order.distortion): {seconds:.0} s.")
+    let (metres, seconds) = (detour.max(0.0) / 1e3, detour.max(0.0) / profile.travel.speed);
+    profile.order.distortion.then(|| {
+        format!(
+            "Heat is kept around the middle of the plate (order.distortion): travels become {metres:.1} m longer and take \
+             {seconds:.0} s more."
+        )
     })
 }
 

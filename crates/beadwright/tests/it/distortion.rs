@@ -111,9 +111,10 @@ fn the_course_of_the_heat_turns_with_the_part() {
         parts.push(([-x - 10.0, -y - 10.0, 0.0], [-x + 10.0, -y + 10.0, 4.0]));
         let profile = steel();
         let course = eccentricity(&layers(&boxes(&parts), &profile), &profile, &Task::new()).unwrap();
-        assert!(course.len() > 100 && course.is_sorted_by(|a, b| a.time < b.time));
-        let supplied = course.windows(2).all(|pair| pair[1].heat < pair[0].heat + 1e5);
-        assert!(supplied && course.iter().all(|at| at.heat >= 0.0 && at.offset.is_finite()));
+        assert!(course.len() > 20 && course.is_sorted_by(|a, b| a.time <= b.time));
+        // No more heat than the arc has given: 129 A at 15 V, of which 85 % reach the part.
+        let given = |time: f64| 129.0 * 15.0 * 0.85 * time;
+        assert!(course.iter().all(|at| 0.0 <= at.heat && at.heat <= 1.01 * given(at.time) && at.offset.is_finite()));
         EccentricityScore::of(&course)
     };
     let (along_x, along_y) = (course([40.0, 0.0]), course([0.0, 40.0]));

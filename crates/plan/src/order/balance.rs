@@ -14,6 +14,9 @@ use glam::DVec2;
 /// Weights of the way to the next pass, against the moment, with which orders are tried.
 const WEIGHTS: [f64; 5] = [0.0, 0.1, 0.3, 1.0, 3.0];
 
+/// A layer with more passes keeps its usual order: finding another takes time that grows with the square of their number.
+const MOST_PASSES: usize = 300;
+
 /// Longest piece of a bead whose heat counts as laid at once, as a fraction of the length over which heat fades.
 const PIECE: f64 = 0.05;
 
@@ -95,11 +98,12 @@ pub(super) fn order(
     let usual = Laid::of(usual, from, warmth, balance);
     let (travel, length) = (usual.travel, usual.passes.iter().map(Path::length).sum::<f64>());
     let longest = travel + balance.detour * length;
-    let balanced = WEIGHTS.map(|weight| {
+    let weights = if usual.passes.len() <= MOST_PASSES { &WEIGHTS[..] } else { &[] };
+    let balanced = weights.iter().map(|&weight| {
         let mut next = Next { settings, balance, weight, at: from, warmth };
         Laid::of(next.layer(islands.to_vec()), from, warmth, balance)
     });
-    let short = balanced.into_iter().filter(|laid| laid.travel <= longest);
+    let short = balanced.filter(|laid| laid.travel <= longest);
     (short.fold(usual, |best, other| if other.warmth.sum < best.warmth.sum { other } else { best }), travel)
 }
 
