@@ -1,11 +1,18 @@
-//! `beadwright distort`: how plate and part bend, on the clamps and released.
+//! `beadwright distort`: how plate and part bend, on the clamps and released; and the part bent beforehand.
 
-use crate::{profile, program, progress};
-use beadwright::distort::{self, Clamp, Distortion, Settings, Shape};
-use beadwright::distortion::Welding;
-use beadwright::task::Stage;
+use crate::{file, model, profile, program, progress};
+use anyhow::Context;
+use beadwright::distort::{self, Clamp, Deviation, Distortion, Eccentricity, EccentricityScore, Settings, Shape};
+use beadwright::distortion::compensate::Compensation;
+use beadwright::distortion::{self, Welding};
+use beadwright::export::solids;
+use beadwright::layer::Layer;
+use beadwright::model::{Mesh, stl};
+use beadwright::plan::plan;
+use beadwright::profile::Profile;
+use beadwright::task::{Stage, Task};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Radius of a clamp, mm, and the distance of those along an edge, mm.
 const CLAMP: (f64, f64) = (10.0, 60.0);
@@ -37,7 +44,19 @@ pub(crate) struct Arguments {
     /// Most steps: beads are laid in as many groups.
     #[arg(long, value_name = "NUMBER")]
     steps: Option<usize>,
-    /// Print machine-readable JSON: figures, the course of the lift, and both shapes.
+    /// Bend this part, of which the plan was made, beforehand, so that it comes out straight once the clamps are opened. Place it as it
+    /// was for the plan.
+    #[arg(long, value_name = "MODEL")]
+    compensate: Option<PathBuf>,
+    /// How often the bent part is planned anew, to see what is left of the deviation and to bend it against that.
+    #[arg(long, value_name = "NUMBER", default_value_t = 2, requires = "compensate", value_parser = clap::value_parser!(u8).range(1..=9))]
+    rounds: u8,
+    /// File for the bent part, as STL or 3MF; NAME_bent.stl if left out.
+    #[arg(long, short, value_name = "FILE", requires = "compensate")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    placing: model::Placing,
+    /// Print machine-readable JSON: figures, the courses of lift and thermal eccentricity, and both shapes.
     #[arg(long)]
     json: bool,
 }
@@ -63,52 +82,129 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let source = program::Source::open(&arguments.plan)?;
     let path = arguments.plan.display();
     anyhow::ensure!(source.plan().is_some(), "{path}: give the plan.json of the program");
+    let idle = arguments.compensate.is_none() && arguments.placing.moves();
+    anyhow::ensure!(
+        !idle,
+        "--units, --scale, --turn, --shift and the like place the part that --compensate names; name it"
+    );
     let profile = source.profile(&arguments.wanted)?;
     let (task, bar) = progress::task()?;
     let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
-    let welding = Welding::of(&loaded.layers, &profile)?;
-    let settings = match arguments.material {
-        Some(Material::Steel) => welding.with_voxels(Settings::steel(), &profile),
-        Some(Material::Aluminium) => welding.with_voxels(Settings::aluminium(), &profile),
-        None => welding.settings(&profile)?,
+    let (beads, bent) = arguments.build(&loaded.layers, &profile, &task)?;
+    let course = distortion::eccentricity(&loaded.layers, &profile, &task)?;
+    let rounds = match &arguments.compensate {
+        Some(part) => arguments.compensated(part, &bent, &profile, &task)?,
+        None => Vec::new(),
     };
-    let settings = Settings {
-        calibration: arguments.calibration,
-        voxel: arguments.voxel.unwrap_or(settings.voxel),
-        voxel_height: arguments.voxel_height.unwrap_or(settings.voxel_height),
-        most_steps: arguments.steps.unwrap_or(settings.most_steps),
-        ..settings
-    };
-    let (stiffness, (radius, spacing)) = (distort::DVec3::splat(arguments.clamp_stiffness), CLAMP);
-    let clamps = match arguments.clamps {
-        Clamps::Corners => welding.plate.clamped_at_corners(radius, stiffness),
-        Clamps::Edge => welding.plate.clamped_along_edge(spacing, radius, stiffness),
-        Clamps::None => Vec::new(),
-    };
-    let bent = distort::build(&welding.plate, &welding.beads, &clamps, &settings, &mut |fraction| {
-        task.step(Stage::Distort, fraction).is_ok()
-    })?;
     bar.finish_and_clear();
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        return Ok(writeln!(out, "{:#}", json(&bent))?);
+        return Ok(writeln!(out, "{:#}", json(&bent, &course, &rounds))?);
     }
-    Ok(print(&mut out, &loaded.name, &bent, welding.beads.len())?)
+    print(&mut out, &loaded.name, &bent, beads)?;
+    print_eccentricity(&mut out, &EccentricityScore::of(&course))?;
+    Ok(print_rounds(&mut out, &rounds)?)
 }
 
-fn json(bent: &Distortion) -> serde_json::Value {
+/// What came of a part bent beforehand.
+struct Round {
+    compensation: Compensation,
+    /// How far the built part is off where it was meant to be.
+    left: Deviation,
+}
+
+impl Arguments {
+    /// Number of beads of layers, and what becomes of them.
+    fn build(&self, layers: &[Layer], profile: &Profile, task: &Task) -> anyhow::Result<(usize, Distortion)> {
+        let welding = Welding::of(layers, profile)?;
+        let settings = match self.material {
+            Some(Material::Steel) => welding.with_voxels(Settings::steel(), profile),
+            Some(Material::Aluminium) => welding.with_voxels(Settings::aluminium(), profile),
+            None => welding.settings(profile)?,
+        };
+        let settings = Settings {
+            calibration: self.calibration,
+            voxel: self.voxel.unwrap_or(settings.voxel),
+            voxel_height: self.voxel_height.unwrap_or(settings.voxel_height),
+            most_steps: self.steps.unwrap_or(settings.most_steps),
+            ..settings
+        };
+        let (stiffness, (radius, spacing)) = (distort::DVec3::splat(self.clamp_stiffness), CLAMP);
+        let clamps = match self.clamps {
+            Clamps::Corners => welding.plate.clamped_at_corners(radius, stiffness),
+            Clamps::Edge => welding.plate.clamped_along_edge(spacing, radius, stiffness),
+            Clamps::None => Vec::new(),
+        };
+        let bent = distort::build(&welding.plate, &welding.beads, &clamps, &settings, &mut |fraction| {
+            task.step(Stage::Distort, fraction).is_ok()
+        })?;
+        Ok((welding.beads.len(), bent))
+    }
+
+    /// Bends a part against what a plan of it does, plans it anew, bends it against what that does, and so on; writes the one of which
+    /// least is left.
+    fn compensated(
+        &self,
+        model: &Path,
+        bent: &Distortion,
+        profile: &Profile,
+        task: &Task,
+    ) -> anyhow::Result<Vec<Round>> {
+        let part = model::Model::placed_so(model, &self.placing);
+        let mesh = part.placed(profile, model::Use::AsDrawn, task)?.mesh;
+        let context = || format!("{}", model.display());
+        let mut compensation = Compensation::new(&mesh, profile.bead.width, task)?;
+        let mut bending = bent.bending(&bent.released);
+        let mut rounds = vec![Round {
+            left: compensation.left(&bending).with_context(context)?,
+            compensation: compensation.clone(),
+        }];
+        for _ in 0..self.rounds {
+            compensation = compensation.against(&bending).with_context(context)?;
+            let planned = plan(&part.part(), &compensation.mesh(), profile, task)?;
+            let (_, bent) = self.build(&planned.layers, profile, task)?;
+            bending = bent.bending(&bent.released);
+            rounds.push(Round {
+                left: compensation.left(&bending).with_context(context)?,
+                compensation: compensation.clone(),
+            });
+        }
+        let path = self.output.clone().unwrap_or_else(|| format!("{}_bent.stl", part.part()).into());
+        if let Some(best) = rounds[1..].iter().min_by(|a, b| a.left.rms.total_cmp(&b.left.rms)) {
+            file::write(&path, &written(&path, &part.part(), &best.compensation.mesh())?)?;
+        }
+        Ok(rounds)
+    }
+}
+
+/// A mesh as 3MF, if the file is called so, or as STL.
+fn written(path: &Path, name: &str, mesh: &Mesh) -> anyhow::Result<Vec<u8>> {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("3mf")) {
+        return Ok(solids::threemf(&[(name, mesh)])?);
+    }
+    let corners = |t: &[u32; 3]| t.map(|corner| mesh.vertices[corner as usize]);
+    Ok(stl::write(&format!("{name}, bent beforehand"), mesh.triangles.iter().map(corners)))
+}
+
+fn json(bent: &Distortion, course: &[Eccentricity], rounds: &[Round]) -> serde_json::Value {
     let shape = |shape: &Shape| {
         let nodes = shape.nodes.iter().zip(&shape.moved);
         let nodes: Vec<_> = nodes.map(|(&node, moved)| [bent.grid.place(node).to_array(), moved.to_array()]).collect();
         serde_json::json!({ "lift": shape.lift, "deviation": shape.deviation, "nodes": nodes })
     };
-    serde_json::json!({
+    let round = |Round { compensation: c, left }: &Round| serde_json::json!({ "bent": c.largest, "at": c.at, "steepest": c.steepest, "raised": c.raised, "left": left });
+    let mut value = serde_json::json!({
         "voxels": bent.voxels.len(),
         "steps": bent.steps,
         "clamped": shape(&bent.clamped),
         "released": shape(&bent.released),
+        "eccentricity": { "score": EccentricityScore::of(course), "course": course },
         "balance": { "clamped": bent.clamped_balance, "released": bent.released_balance },
-    })
+    });
+    if !rounds.is_empty() {
+        value["compensation"] = rounds.iter().map(round).collect();
+    }
+    value
 }
 
 fn print(out: &mut impl Write, name: &str, bent: &Distortion, beads: usize) -> std::io::Result<()> {
@@ -126,4 +222,33 @@ fn print(out: &mut impl Write, name: &str, bent: &Distortion, beads: usize) -> s
     }
     let force = bent.clamped_balance.largest_reaction;
     writeln!(out, "  {:<32} {:.1} kN at a node", "largest force of a clamp", force / 1e3)
+}
+
+fn print_eccentricity(out: &mut impl Write, score: &EccentricityScore) -> std::io::Result<()> {
+    let EccentricityScore { mean, largest, largest_at, lasting } = score;
+    let lasting = lasting.truncate().length();
+    writeln!(
+        out,
+        "  {:<32} {mean:.1} mm on the mean, {largest:.1} mm after {:.0} min, {lasting:.1} mm that does not cancel",
+        "thermal eccentricity",
+        largest_at / 60.0
+    )
+}
+
+fn print_rounds(out: &mut impl Write, rounds: &[Round]) -> std::io::Result<()> {
+    for (number, Round { compensation: c, left }) in rounds.iter().enumerate() {
+        let (largest, rms) = (left.largest, left.rms);
+        if number == 0 {
+            writeln!(out, "\nbent beforehand")?;
+            writeln!(out, "  {:<32} {largest:.2} mm at most, {rms:.2} mm rms", "off as it was planned")?;
+            continue;
+        }
+        let name = format!("off with bend {number}");
+        writeln!(
+            out,
+            "  {name:<32} {largest:.2} mm at most, {rms:.2} mm rms; bent by up to {:.2} mm ({:.3} mm per mm), raised by {:.2} mm",
+            c.largest, c.steepest, c.raised
+        )?;
+    }
+    Ok(())
 }

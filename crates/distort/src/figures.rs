@@ -121,8 +121,7 @@ impl Shape {
         let of_part = |node: &usize| grid.touching(*node).any(welded);
         let part: Vec<usize> = nodes.iter().copied().filter(of_part).collect();
         let plane = Rigid::fitted(lower.iter().map(|&node| raw(node)));
-        let own = Rigid::fitted(part.iter().map(|&node| raw(node)));
-        let deviation = deviation(part.iter().map(|&node| raw(node)), &own);
+        let deviation = Deviation::of(part.iter().map(|&node| raw(node)));
         let seen = |&node: &usize| {
             let (place, moved) = raw(node);
             if clamped { moved } else { moved - plane.at(place) }
@@ -149,17 +148,21 @@ impl Lift {
     }
 }
 
-fn deviation(part: impl Iterator<Item = (DVec3, DVec3)>, own: &Rigid) -> Deviation {
-    let (mut sum, mut count, mut deviation) = (0.0, 0usize, Deviation::default());
-    for (place, moved) in part {
-        let distance = (moved - own.at(place)).length();
-        sum += distance * distance;
-        count += 1;
-        if distance > deviation.largest {
-            (deviation.largest, deviation.at) = (distance, place);
+impl Deviation {
+    /// Of places with their displacements, mm.
+    pub fn of(part: impl Iterator<Item = (DVec3, DVec3)> + Clone) -> Self {
+        let own = Rigid::fitted(part.clone());
+        let (mut sum, mut count, mut deviation) = (0.0, 0usize, Self::default());
+        for (place, moved) in part {
+            let distance = (moved - own.at(place)).length();
+            sum += distance * distance;
+            count += 1;
+            if distance > deviation.largest {
+                (deviation.largest, deviation.at) = (distance, place);
+            }
         }
+        Self { rms: (sum / count.max(1) as f64).sqrt(), ..deviation }
     }
-    Deviation { rms: (sum / count.max(1) as f64).sqrt(), ..deviation }
 }
 
 impl Distortion {

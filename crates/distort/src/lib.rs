@@ -14,6 +14,7 @@
 //! | `zone` | the shrinkage of a bead, shared out |
 //! | [`build`](mod@build) | birth, shrinkage, balance and release |
 //! | [`figures`] | [`Distortion`]: shapes, lift, deviation, balances; calibration by a scan |
+//! | [`bending`] | [`Bending`]: how the part deviates at any place |
 //! | [`eccentricity`](mod@eccentricity) | where the heat is |
 //! | [`body`] | [`Body`]: one elastic body of voxels, for questions of other kinds |
 //! | [`grid`], `mesh` | the lattice, and its voxels with metal |
@@ -32,6 +33,7 @@
 //! # Ok::<(), distort::DistortError>(())
 //! ```
 
+pub mod bending;
 pub mod body;
 pub mod build;
 pub mod eccentricity;
@@ -52,6 +54,7 @@ mod system;
 mod vector;
 mod zone;
 
+pub use bending::Bending;
 pub use body::{Body, Solved};
 pub use build::build;
 pub use eccentricity::{Deposit, Eccentricity, EccentricityScore, Snapshot, Warm, cooling, eccentricity};

@@ -17,6 +17,7 @@ fn the_plate_of_a_plan_bends() {
     let rough = ["distort", "plan/plan.json", "--voxel", "8", "--voxel-height", "4", "--steps", "6"];
     let text = said(&beadwright(at, &rough));
     assert!(text.contains("lift of the plate, released") && text.contains("deviation of the part"), "{text}");
+    assert!(text.contains("thermal eccentricity"), "{text}");
     let lift = |more: &[&str]| {
         let text = said(&beadwright(at, &[&rough[..], &["--json"], more].concat()));
         let all: serde_json::Value = serde_json::from_str(&text).unwrap();
@@ -35,4 +36,32 @@ fn the_plate_of_a_plan_bends() {
     assert_eq!(refused.status.code(), Some(2), "{refused:?}");
     let refused = beadwright(at, &["distort", "plan/plan.json", "--calibration", "1000"]);
     assert!(String::from_utf8_lossy(&refused.stderr).contains("calibration = 1000"), "{refused:?}");
+}
+
+#[test]
+fn a_part_is_bent_beforehand() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    said(&beadwright(at, &["example", "wall", "-o", "wall.stl"]));
+    let turn = ["--turn", "0,0,30"];
+    said(&beadwright(
+        at,
+        &[&["plan", "wall.stl", "-p", "cmt-steel-abb", "--no-deposit", "-o", "plan"][..], &turn].concat(),
+    ));
+    let rough = ["distort", "plan/plan.json", "--voxel", "4", "--voxel-height", "4", "--steps", "8"];
+    let bend = |more: &[&str]| beadwright(at, &[&rough[..], &["--compensate", "wall.stl"], &turn, more].concat());
+    let all: serde_json::Value = serde_json::from_str(&said(&bend(&["--json", "--rounds", "1"]))).unwrap();
+    let left = |round: usize| all["compensation"][round]["left"]["rms"].as_f64().unwrap();
+    assert!(left(1) < 0.5 * left(0), "{all:#}");
+    assert!(all["eccentricity"]["course"].as_array().unwrap().len() > 50);
+    let text = said(&bend(&["--rounds", "1", "-o", "bent.3mf"]));
+    assert!(text.contains("off with bend 1") && text.contains("raised by"), "{text}");
+    for file in ["wall_bent.stl", "bent.3mf"] {
+        let text = said(&beadwright(at, &["inspect", file]));
+        assert!(text.contains("closed and clean"), "{text}");
+    }
+    let refused = String::from_utf8_lossy(&bend(&["--shift", "0,200"]).stderr).into_owned();
+    assert!(refused.contains("lays no metal"), "{refused}");
+    let refused = beadwright(at, &["distort", "plan/plan.json", "--scale", "2"]);
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("--compensate"), "{refused:?}");
 }

@@ -29,6 +29,8 @@ use std::borrow::Cow;
 pub(super) struct Emitter<'a, S> {
     pub(super) profile: &'a Profile,
     pub(super) sink: &'a mut S,
+    /// Middle of the part seen from above, and so of its plate, mm.
+    pub(super) middle: DVec2,
     pub(super) torch: Option<DVec2>,
     pub(super) heat: &'a mut Heat,
     pub(super) memory: order::Memory,
@@ -68,7 +70,7 @@ impl<S: Sink> Emitter<'_, S> {
         if islands.is_empty() {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
-        let order = self.profile.order_settings(index);
+        let order = self.profile.order_settings(index).around(self.middle);
         let paths = self.memory.order(fills, shared, &order, &mut self.torch);
         let passes = lifted(paths, index, (z, height / self.heat.lift(index, z - height)), self.profile);
         let mut layer =

@@ -383,6 +383,7 @@ fn run<S: Sink + Send>(
     let mut emitter = Emitter {
         profile,
         sink,
+        middle: extent.seen_from_above().center(),
         torch: None,
         heat,
         memory: order::Memory::default(),
@@ -416,15 +417,27 @@ fn run<S: Sink + Send>(
         }
         ready = filled?;
     }
-    let Emitter { metrics, warnings, points, has_helix, .. } = emitter;
+    let Emitter { metrics, warnings, points, has_helix, memory, .. } = emitter;
     let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
     let forbidden = profile.forbidden().into_iter().chain(forbids).collect();
     let large = profile.check.max_plan_points.filter(|most| points > *most as usize);
     let large = large.map(|most| format!("The plan has {points} points; the limit is {most} (check.max_plan_points)."));
     let asked = profile.fill.around == Some(Around::Helix) && profile.layers.chart.goes_around();
     let open = (asked && !has_helix).then(|| NO_HELIX.to_owned());
-    let notes = large.into_iter().chain(open).chain(profile.notes()).collect();
+    let notes =
+        large.into_iter().chain(open).chain(balanced(memory.detour(), profile)).chain(profile.notes()).collect();
     Ok(Summary { metrics, warnings, notes, forbidden })
+}
+
+/// What it costs to keep heat around the middle of the plate: `detour` is how much longer travels became, mm.
+fn balanced(detour: f64, profile: &Profile) -> Option<String> {
+    let (metres, seconds) = (detour.max(0.0) / 1e3, detour.max(0.0) / profile.travel.speed);
+    profile.order.distortion.then(|| {
+        format!(
+            "Heat is kept around the middle of the plate (order.distortion): travels become {metres:.1} m longer and take \
+             {seconds:.0} s more."
+        )
+    })
 }
 
 /// Why there is no helix, though one was asked for.

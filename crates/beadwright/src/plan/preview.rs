@@ -39,11 +39,13 @@ pub fn preview(
     };
     let mut last = Last(None);
     let (metrics, warnings) = (Metrics::new(profile), Warnings::default());
+    let (low, high) = part.bounds();
     // The layers below are assumed to be there.
     let built = f64::INFINITY;
     let mut emitter = Emitter {
         profile,
         sink: &mut last,
+        middle: low.midpoint(high).truncate(),
         torch: None,
         heat: &mut Heat::default(),
         memory: Memory::default(),

@@ -46,7 +46,7 @@ use crate::heat::{HeatError, HeatSection, HeatSettings, Interpass, Material, Sub
 use crate::layer::Layer;
 use crate::limit::Limit;
 use crate::motion::Motion;
-use crate::order::OrderSettings;
+use crate::order::{Balance, OrderSettings};
 use crate::preform::PreformSettings;
 use crate::preform::figures::Rates;
 use crate::preform::section::PreformSection;
@@ -434,8 +434,17 @@ impl Profile {
 
     /// How the passes of a layer are put in order.
     pub fn order_settings(&self, layer: usize) -> OrderSettings {
-        let OrderSection { method, seam, alternate } = self.order;
-        OrderSettings { method, seam, alternate, layer, bead_width: self.bead.width }
+        /// The time in which the heat of a bead fades to 1/e, s, and how much longer travels may take, as a fraction of the
+        /// time of the arc, for the sake of balanced heat; our own choice.
+        const BALANCE: (f64, f64) = (60.0, 0.05);
+        let OrderSection { method, seam, alternate, distortion } = self.order;
+        let speed = self.process.deposition_speed;
+        let balance = distortion.then(|| Balance {
+            middle: DVec2::ZERO,
+            fading: BALANCE.0 * speed,
+            detour: BALANCE.1 * self.travel.speed / speed,
+        });
+        OrderSettings { method, seam, alternate, layer, bead_width: self.bead.width, balance }
     }
 
     /// Settings for welding.

@@ -66,7 +66,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["settings"],
             &["metal"],
             &["figures", "zone"],
-            &["build"],
+            &["bending", "build"],
         ],
     ),
     (

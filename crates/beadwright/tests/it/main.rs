@@ -35,6 +35,7 @@ mod deposit_quick;
 mod deviation;
 mod dialect_pages;
 mod dialects;
+mod distortion;
 mod dots;
 mod drafts;
 mod examples;

@@ -4,7 +4,7 @@ use crate::solids;
 
 use beadwright::fill::{Fill, FillSettings, Path, StrategyName};
 
-use beadwright::order::{Memory, OrderSettings, Seam, order};
+use beadwright::order::{Balance, Memory, OrderSettings, Seam, order};
 use beadwright::pass::Along;
 use beadwright::pass::PassKind;
 use beadwright::planar::{DVec2, Polygon, Ring};
@@ -339,4 +339,60 @@ fn no_closed_pass_begins_within_half_a_bead_of_a_start_of_the_five_layers_below(
             }
         }
     }
+}
+
+/// Mean distance of the middle of heat from the origin, mm, where heat fades over `fading` mm of bead: summed up mm by mm.
+fn heat_apart(passes: &[Path], fading: f64) -> f64 {
+    let (mut moment, mut sum, mut steps) = (DVec2::ZERO, 0.0, 0.0);
+    for pass in passes {
+        let path = pass.path();
+        for mm in 0..pass.length() as usize {
+            let place = beadwright::planar::polyline::point_at(&path, mm as f64 + 0.5).unwrap();
+            moment = moment * (-1.0 / fading).exp() + place;
+            sum += moment.length() / fading;
+            steps += 1.0;
+        }
+    }
+    sum / steps
+}
+
+/// Islands at random places: heat lies nearer to the middle than in the usual order, travels stay within bounds, and every pass is
+/// laid once.
+#[test]
+fn balanced_orders_keep_heat_in_the_middle_within_their_travels() {
+    let cases = prop::collection::vec((-90.0..90.0, -90.0..90.0, 4.0..30.0, any::<bool>(), any::<bool>()), 1..9);
+    let gained = std::cell::RefCell::new(Vec::new());
+    let check = |islands: Vec<(f64, f64, f64, bool, bool)>| {
+        let island = |&(x, y, side, ring, reversible): &(f64, f64, f64, bool, bool)| {
+            let square = closed(&[(x, y), (x + side, y), (x + side, y + side), (x, y + side)]);
+            let line = |k: f64| open(&[(x, y + k), (x + side, y + k)], reversible);
+            let stages =
+                if ring { vec![vec![square]] } else { vec![vec![square], vec![line(2.0), line(4.0), line(6.0)]] };
+            Fill { stages, fixed_order: false }
+        };
+        let islands: Vec<Fill> = islands.iter().map(island).collect();
+        let balance = Balance { middle: DVec2::ZERO, fading: 300.0, detour: 0.8 };
+        let settings = OrderSettings { balance: Some(balance), ..OrderSettings::default() };
+        let usual = order(islands.clone(), &settings, &mut None);
+        let (mut memory, mut torch) = (Memory::default(), None);
+        let laid = memory.order(islands.clone(), false, &settings, &mut torch);
+        assert_eq!(torch, laid.last().map(end));
+        let mut left: Vec<&Path> = islands.iter().flat_map(|fill| &fill.stages).flatten().collect();
+        for pass in &laid {
+            let found = left.iter().position(|p| same(pass, p)).expect("laid, but not among the passes or twice");
+            left.remove(found);
+        }
+        assert!(left.is_empty());
+        let length: f64 = usual.iter().map(Path::length).sum();
+        let longest = travel(&usual, DVec2::ZERO) + balance.detour * length;
+        assert!(travel(&laid, DVec2::ZERO) < longest + 1e-6);
+        let (before, after) = (heat_apart(&usual, balance.fading), heat_apart(&laid, balance.fading));
+        assert!(after < before + 0.5, "{before} {after}");
+        gained.borrow_mut().push([before, after]);
+        Ok(())
+    };
+    runner(60).run(&cases, check).unwrap();
+    let [before, after] = [0, 1].map(|k| gained.borrow().iter().map(|pair| pair[k]).sum::<f64>());
+    println!("heat lies {:.1} mm instead of {:.1} mm from the middle", after / 60.0, before / 60.0);
+    assert!(after < 0.9 * before);
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test may fail by panic")]
 
 mod balance;
+mod bending;
 mod calibrate;
 mod closed_forms;
 mod eccentricity;

@@ -60,7 +60,7 @@ pub fn bent(surface: &Surface, flat: &Mesh, tolerance: f64, task: &Task) -> Resu
 ///
 /// # Errors
 /// [`WarpError::Cancelled`].
-pub(crate) fn divided(mesh: &Mesh, longest: f64, task: &Task) -> Result<Mesh, WarpError> {
+pub fn divided(mesh: &Mesh, longest: f64, task: &Task) -> Result<Mesh, WarpError> {
     divided_where(mesh, longest, task, |_, _| true)
 }
 

@@ -1,6 +1,7 @@
 //! A part being built: metal is laid as the torch goes, heated by the arc, and cools meanwhile.
 
 use super::body::{Air, Body, Stuff};
+use super::course::Watch;
 use super::frame::{Frame, On};
 use super::grid::{Grid, graded};
 use super::settings::{HeatSettings, Interpass};
@@ -128,6 +129,8 @@ pub struct Build {
     /// Time since the beginning, s, and the part of it by which the body has not yet been advanced.
     pub(super) now: f64,
     pub(super) pending: f64,
+    /// Where the heat lay so far, if that is wanted.
+    pub(super) watch: Option<Watch>,
 }
 
 impl Build {
@@ -174,6 +177,7 @@ impl Build {
             settings,
             now: 0.0,
             pending: 0.0,
+            watch: None,
         };
         build.be_patient(PATIENCE);
         build
@@ -284,6 +288,7 @@ impl Build {
             }
             self.body.step(next);
             self.pending = if next == self.pending { 0.0 } else { self.pending - next };
+            self.note();
             step = (step * GROWTH).min(self.longest_step(whole - self.pending));
         }
     }
@@ -441,7 +446,15 @@ impl Build {
         self.body.refresh(&laid.iter().map(|(voxel, _)| *voxel).collect::<Vec<_>>());
         self.now += seconds;
         self.body.step(seconds + std::mem::take(&mut self.pending));
+        self.note();
         ahead
+    }
+
+    /// Notes where the heat lies, if that is wanted.
+    fn note(&mut self) {
+        if let Some(watch) = &mut self.watch {
+            watch.note(&self.body, self.now - self.pending);
+        }
     }
 }
 

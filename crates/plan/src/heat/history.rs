@@ -1,6 +1,7 @@
 //! The temperatures of a whole plan.
 
 use super::build::{Build, LayerHeat};
+use super::course::{Moment, Watch};
 use super::frame::Site;
 use super::settings::HeatSettings;
 use crate::layer::Layer;
@@ -123,4 +124,26 @@ pub fn history(
         heats.push(build.layer_within_limits(layer));
     }
     Ok(Some(History::of(heats, &build)))
+}
+
+/// Where the heat lies while layers are built with the waits that they have, at most every `every` seconds; nothing if there is
+/// nothing to build. Limits between passes are left aside, since waits for them are already in the passes.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn course(
+    layers: &[Layer],
+    settings: &HeatSettings,
+    weld: &WeldSettings,
+    every: f64,
+    task: &Task,
+) -> Result<Vec<Moment>, Cancelled> {
+    let settings = HeatSettings { interpass: None, ..settings.clone() };
+    let Some(mut build) = plate(layers, &settings, weld) else { return Ok(Vec::new()) };
+    build.watch = Some(Watch { every, moments: Vec::new() });
+    for (done, layer) in layers.iter().enumerate() {
+        task.step(Stage::Heat, done as f64 / layers.len() as f64)?;
+        build.layer(layer);
+    }
+    Ok(build.watch.map_or_else(Vec::new, |watch| watch.moments))
 }

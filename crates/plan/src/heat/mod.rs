@@ -13,12 +13,14 @@
 //! | `body` | their metal: what it holds, conducts and leaves bare |
 //! | `sweep` | one step in time |
 //! | `build` | the torch moves, metal is laid and heated; temperatures of passes and layers |
+//! | `course` | where the heat lies, over the time of a build |
 //! | `history` | all layers of a plan, one after another |
 //! | `interpass` | waits, and the order of passes that saves waiting |
 //! | `walls` | thickness and width of layers by heat, fitted to measured walls |
 
 mod body;
 mod build;
+mod course;
 mod frame;
 mod grid;
 mod history;
@@ -30,8 +32,9 @@ mod walls;
 
 pub use body::{Air, Body, Stuff};
 pub use build::{Build, LONGEST_WAIT, LayerHeat, MOST_VOXELS, NOISE, PassHeat};
+pub use course::Moment;
 pub use frame::Site;
 pub use grid::Grid;
-pub use history::{History, history, plate};
+pub use history::{History, course, history, plate};
 pub use settings::{HeatError, HeatSection, HeatSettings, Interpass, Material, Substrate};
 pub use walls::{ByHeat, MeasuredWall, PredictedWall, Wall, WallFitError, WallLaw};

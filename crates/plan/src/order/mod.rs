@@ -14,8 +14,10 @@
 //! | [`exact`] | the optimum by dynamic programming, for few stops |
 //! | `seams` | starts of closed passes moved off those of the layers below |
 //! | `direction` | passes reversed on every second layer |
+//! | `balance` | heat kept around the middle of the plate |
 
 pub mod ant_colony;
+mod balance;
 mod direction;
 pub mod exact;
 pub mod local_search;
@@ -23,7 +25,10 @@ pub mod nearest;
 mod seams;
 pub mod tour;
 
+pub use balance::Balance;
+
 use crate::fill::{Fill, Path};
+use balance::Warmth;
 use glam::DVec2;
 use seams::Seams;
 use serde::{Deserialize, Serialize};
@@ -92,12 +97,19 @@ pub struct OrderSettings {
     pub layer: usize,
     /// Bead width, mm.
     pub bead_width: f64,
+    /// How heat is kept around the middle of the plate; `None` where only travels count. Only a [`Memory`] knows the heat.
+    pub balance: Option<Balance>,
 }
 
 impl OrderSettings {
+    /// The same for a plate whose middle is here, mm.
+    pub fn around(self, middle: DVec2) -> Self {
+        Self { balance: self.balance.map(|balance| Balance { middle, ..balance }), ..self }
+    }
+
     /// Whether passes are laid alike on every layer.
     fn repeats(&self) -> bool {
-        !self.alternate && matches!(self.seam, Seam::Nearest | Seam::Aligned)
+        !self.alternate && self.balance.is_none() && matches!(self.seam, Seam::Nearest | Seam::Aligned)
     }
 
     /// Where a closed pass must begin; `None` where the order may choose.
@@ -164,6 +176,8 @@ pub fn order(mut islands: Vec<Fill>, settings: &OrderSettings, torch: &mut Optio
 pub struct Memory {
     known: VecDeque<Known>,
     seams: Seams,
+    warmth: Warmth,
+    detour: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -188,10 +202,32 @@ impl Memory {
         settings: &OrderSettings,
         torch: &mut Option<DVec2>,
     ) -> Vec<Path> {
-        let ordered = self.known(islands, shared, settings, torch);
+        let ordered = match &settings.balance {
+            Some(balance) => self.balanced(islands, settings, balance, *torch),
+            None => self.known(islands, shared, settings, torch),
+        };
         let settled = self.seams.settle(ordered, settings);
         *torch = settled.last().and_then(last_point).or(*torch);
         settled
+    }
+
+    /// How much longer travels became so that heat is balanced, mm.
+    pub fn detour(&self) -> f64 {
+        self.detour
+    }
+
+    fn balanced(
+        &mut self,
+        islands: Vec<Fill>,
+        settings: &OrderSettings,
+        balance: &Balance,
+        mut torch: Option<DVec2>,
+    ) -> Vec<Path> {
+        let from = torch.unwrap_or_default();
+        let usual = order(islands.clone(), settings, &mut torch);
+        let (laid, travel) = balance::order(&islands, usual, settings, balance, from, self.warmth);
+        (self.warmth, self.detour) = (laid.warmth, self.detour + laid.travel - travel);
+        laid.passes
     }
 
     fn known(

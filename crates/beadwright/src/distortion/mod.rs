@@ -1,14 +1,20 @@
-//! A plan as input of the distortion model: beads with their heat on a plate, and the settings that suit a profile.
+//! A plan as input of the distortion model: beads with their heat on a plate, and the settings that suit a profile; and a part bent
+//! beforehand ([`compensate`]).
 
-use crate::heat::HeatError;
+pub mod compensate;
+
+use crate::heat::{self, HeatError, Moment};
 use crate::layer::Layer;
 use crate::pass::Pass;
 use crate::process::Process;
 use crate::profile::Profile;
-use distort::{Bead, DVec3, DistortError, Plate, Settings};
+use crate::task::Task;
+use distort::{Bead, DVec3, DistortError, Eccentricity, Plate, Settings};
 
 /// Voxels are made larger if the lattice around plate and part would have more than this.
 const WANTED_VOXELS: f64 = 400_000.0;
+/// Times at which the thermal eccentricity of a plan is computed.
+const MOMENTS: f64 = 500.0;
 /// From this density on, g/cm³, a wire counts as steel, and up to this one as aluminium.
 const STEEL: f64 = 7.0;
 const ALUMINIUM: f64 = 3.5;
@@ -104,6 +110,23 @@ impl Welding {
         let larger = (voxels / WANTED_VOXELS).cbrt().max(1.0);
         Settings { voxel: larger * wide, voxel_height: larger * high, ..material }
     }
+}
+
+/// The thermal eccentricity of a plan over its time, at about 500 times, by the heat model: from the middle of all metal, plate
+/// included, to that of the heat above the temperature of the surroundings.
+///
+/// # Errors
+/// The profile lacks thermal values, or the task was cancelled.
+pub fn eccentricity(layers: &[Layer], profile: &Profile, task: &Task) -> Result<Vec<Eccentricity>, DistortionError> {
+    let (settings, weld) = (profile.heat_settings()?, profile.weld_settings());
+    let of_layer = |layer: &Layer| -> f64 {
+        let process = weld.process.at_layer(layer.index);
+        layer.passes.iter().map(|pass| pass.wait + pass.seconds(&process)).sum()
+    };
+    let every = layers.iter().map(of_layer).sum::<f64>() / MOMENTS;
+    let course = heat::course(layers, &settings, &weld, every, task).map_err(|_| DistortError::Cancelled)?;
+    let offset = |m: &Moment| Eccentricity { time: m.time, heat: m.heat, offset: m.hot - m.middle };
+    Ok(course.iter().map(offset).collect())
 }
 
 /// A pass as a bead; `None` for one without length, such as a dot.
