@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 """CPU seconds and peak memory of whole processes beside PrusaSlicer and CuraEngine, where these are installed.
 
-Solid prints, same layers and line widths for all: perimeters as the case says, 100 % rectilinear inside. CPU is user and
-system time together, so other jobs on the machine hardly matter; each figure is the median of RUNS by CPU.
+Solid prints, same layers and line widths for all: perimeters as the case says, 100 % rectilinear inside. The peers run
+twice: set to equal work (classic perimeters, no skins, no gap fill, no bridges: nothing that we are not asked for), and
+with their other settings as they come. CPU is user and system time together, so other jobs on the machine hardly
+matter; each figure is the median of RUNS by CPU. With --welder, weld beads are planned by us with the profile
+cmt-al2319-kuka and compound paths, as a welder would: joints, checks and thin places with them.
 
 Debian: apt-get install prusa-slicer cura-engine cura   (cura holds the definitions, else $CURA_DEFINITIONS)
-Usage: benches/peers.py [--runs 3] [--cases plate_holes,…] [--turn 0] [--judged] [--json FILE] [--binary target/release/beadwright]
+Usage: benches/peers.py [--runs 3] [--cases plate_holes,…] [--turn 0] [--settings equal,default] [--judged] [--welder]
+                        [--json FILE] [--binary target/release/beadwright]
 """
 import argparse, concurrent.futures, gzip, json, math, os, pathlib, shutil, struct, subprocess, tempfile
 
@@ -44,35 +48,50 @@ def model(name, scale, turn, work):
     return path
 
 
-def ours(binary, part, bead, perimeters, work, judged):
-    profile = PROFILES[bead].read_text().replace("perimeters = 1", f"perimeters = {perimeters}")
-    (work / "profile.toml").write_text(profile)
-    judging = [] if judged else ["--no-deposit"]
-    return [binary, "plan", part, "-p", work / "profile.toml", *judging, "--allow-findings", "-o", work / "ours"]
+def ours(binary, part, bead, perimeters, work, given):
+    if given.welder and bead[0] > 1:
+        how = ["-p", "cmt-al2319-kuka", "-s", "compound"]
+    else:
+        profile = PROFILES[bead].read_text().replace("perimeters = 1", f"perimeters = {perimeters}")
+        (work / "profile.toml").write_text(profile)
+        how = ["-p", work / "profile.toml"]
+    judging = [] if given.judged else ["--no-deposit"]
+    return [binary, "plan", part, *how, *judging, "--allow-findings", "-o", work / "ours"]
 
 
-def prusa(part, bead, perimeters, work):
+def prusa(part, bead, perimeters, work, equal):
     width, height = bead
     keys = "extrusion-width first-layer-extrusion-width perimeter-extrusion-width external-perimeter-extrusion-width " \
         "infill-extrusion-width solid-infill-extrusion-width top-infill-extrusion-width nozzle-diameter"
     widths = [arg for key in keys.split() for arg in (f"--{key}", str(width))]
+    lean = ["--perimeter-generator", "classic", "--top-solid-layers", "0", "--bottom-solid-layers", "0",
+            "--solid-infill-below-area", "0", "--no-thin-walls", "--no-gap-fill-enabled", "--resolution", "0"]
+    first = height if equal else 2 * height
     return ["prusa-slicer", "--export-gcode", part, "-o", work / "prusa.gcode", "--layer-height", str(height),
-            "--first-layer-height", str(2 * height), *widths, "--filament-diameter", "1.75", "--perimeters", str(perimeters),
-            "--fill-density", "100%", "--fill-pattern", "rectilinear", "--skirts", "0",
+            "--first-layer-height", str(first), *widths, "--filament-diameter", "1.75", "--perimeters", str(perimeters),
+            "--fill-density", "100%", "--fill-pattern", "rectilinear", "--skirts", "0", *(lean if equal else []),
             "--bed-shape", "0x0,600x0,600x600,0x600", "--max-print-height", "600"]
 
 
-def cura(part, bead, perimeters, work):
+def cura(part, bead, perimeters, work, equal):
     width, height = bead
     values = {key: width for key in "line_width wall_line_width wall_line_width_0 wall_line_width_x skin_line_width "
               "infill_line_width machine_nozzle_size".split()}
     values |= dict(machine_width=600, machine_depth=600, machine_height=600, center_object="true", mesh_position_x=0,
                    mesh_position_y=0, mesh_position_z=0, machine_center_is_zero="true", material_diameter=1.75,
                    layer_height=height, layer_height_0=height, initial_layer_line_width_factor=100,
-                   wall_line_count=perimeters, wall_thickness=perimeters * width, bottom_layers=99999,
-                   initial_bottom_layers=99999, top_layers=0, top_bottom_pattern="zigzag", top_bottom_pattern_0="zigzag",
-                   skin_outline_count=0, infill_line_distance=0, adhesion_type="none", skirt_line_count=0,
-                   roofing_layer_count=0, cool_min_layer_time=0, prime_blob_enable="false")
+                   wall_line_count=perimeters, wall_thickness=perimeters * width, adhesion_type="none",
+                   skirt_line_count=0, roofing_layer_count=0, cool_min_layer_time=0, prime_blob_enable="false")
+    if equal:
+        values |= dict(bottom_layers=0, initial_bottom_layers=0, top_layers=0, infill_sparse_density=100,
+                       infill_sparse_thickness=height, infill_line_distance=width, infill_pattern="lines",
+                       zig_zaggify_infill="false", infill_overlap=0, infill_overlap_mm=0, infill_wipe_dist=0,
+                       wall_0_wipe_dist=0, wall_0_inset=0, skin_edge_support_layers=0, fill_perimeter_gaps="nowhere",
+                       fill_outline_gaps="false", brim_line_count=0, support_enable="false", retraction_combing="off",
+                       slicing_tolerance="middle")
+    else:
+        values |= dict(bottom_layers=99999, initial_bottom_layers=99999, top_layers=0, top_bottom_pattern="zigzag",
+                       top_bottom_pattern_0="zigzag", skin_outline_count=0, infill_line_distance=0)
     settings = [arg for key, value in values.items() for arg in ("-s", f"{key}={value}")]
     return ["CuraEngine", "slice", "-j", DEFINITIONS / "fdmprinter.def.json", *settings, "-e0", "-s",
             "material_diameter=1.75", "-l", part, "-o", work / "cura.gcode"]
@@ -110,6 +129,8 @@ def main():
     arguments.add_argument("--turn", type=float, default=0, help="turns the parts about z, degrees")
     arguments.add_argument("--json", type=pathlib.Path)
     arguments.add_argument("--binary", type=pathlib.Path)
+    arguments.add_argument("--settings", default="equal,default", help="of the peers")
+    arguments.add_argument("--welder", action="store_true", help="weld beads planned as a welder would")
     arguments.add_argument("--judged", action="store_true", help="our plans with the deposit model on, as by default")
     arguments.add_argument("--alone", action="store_true", help="leave the peers out")
     given = arguments.parse_args()
@@ -117,8 +138,11 @@ def main():
         subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "beadwright-cli"], cwd=ROOT, check=True)
     target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     binary = given.binary or target / "release/beadwright"
-    peers = {"PrusaSlicer": (prusa, "prusa-slicer"), "CuraEngine": (cura, "CuraEngine")}
-    peers = {} if given.alone else {name: of for name, (of, command) in peers.items() if shutil.which(command)}
+    peers = {}
+    for setting in ([] if given.alone else given.settings.split(",")):
+        for name, of, command in (("PrusaSlicer", prusa, "prusa-slicer"), ("CuraEngine", cura, "CuraEngine")):
+            if shutil.which(command):
+                peers[f"{name}, {setting}"] = lambda *case, of=of, equal=setting == "equal": of(*case, equal)
     rows = []
     print(f"{'case':<26}" + "".join(f"{name:>22}" for name in [*peers, "beadwright"]) + "   (CPU s, peak MB)")
     for name, file, scale, bead, perimeters in CASES:
@@ -129,7 +153,7 @@ def main():
             # In another process: the memory of this one counts as that of what it starts.
             part = other.submit(model, file, scale, given.turn, work).result()
             row = {"case": name} | {peer: measured(of(part, bead, perimeters, work), given.runs) for peer, of in peers.items()}
-            row["beadwright"] = measured(ours(binary, part, bead, perimeters, work, given.judged), given.runs)
+            row["beadwright"] = measured(ours(binary, part, bead, perimeters, work, given), given.runs)
         rows.append(row)
         cells = [row[who] for who in [*peers, "beadwright"]]
         print(f"{name:<26}" + "".join(f"{c['cpu_s']:>14.2f}{c['peak_mb']:>8.0f}" if c else f"{'refused':>22}" for c in cells), flush=True)

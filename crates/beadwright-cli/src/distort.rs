@@ -2,20 +2,17 @@
 
 use crate::{file, model, profile, program, progress};
 use anyhow::Context;
-use beadwright::distort::{self, Clamp, Deviation, Distortion, Eccentricity, EccentricityScore, Settings, Shape};
+use beadwright::distort::{Clamp, Deviation, Distortion, Eccentricity, EccentricityScore, Shape};
 use beadwright::distortion::compensate::Compensation;
-use beadwright::distortion::{self, Welding};
+use beadwright::distortion::{self, Setup, Welding};
 use beadwright::export::solids;
 use beadwright::layer::Layer;
 use beadwright::model::{Mesh, stl};
 use beadwright::plan::plan;
 use beadwright::profile::Profile;
-use beadwright::task::{Stage, Task};
+use beadwright::task::Task;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-
-/// Radius of a clamp, mm, and the distance of those along an edge, mm.
-const CLAMP: (f64, f64) = (10.0, 60.0);
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -56,6 +53,9 @@ pub(crate) struct Arguments {
     output: Option<PathBuf>,
     #[command(flatten)]
     placing: model::Placing,
+    /// HTML page to write: the bent shape in 3-D, exaggerated by a slider, and its figures.
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
     /// Print machine-readable JSON: figures, the courses of lift and thermal eccentricity, and both shapes.
     #[arg(long)]
     json: bool,
@@ -97,6 +97,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         None => Vec::new(),
     };
     bar.finish_and_clear();
+    if let Some(page) = &arguments.page {
+        file::write(page, distortion::page::page(&loaded.name, &bent, &course).html().as_bytes())?;
+    }
     let mut out = std::io::stdout().lock();
     if arguments.json {
         return Ok(writeln!(out, "{:#}", json(&bent, &course, &rounds))?);
@@ -117,28 +120,23 @@ impl Arguments {
     /// Number of beads of layers, and what becomes of them.
     fn build(&self, layers: &[Layer], profile: &Profile, task: &Task) -> anyhow::Result<(usize, Distortion)> {
         let welding = Welding::of(layers, profile)?;
-        let settings = match self.material {
-            Some(Material::Steel) => welding.with_voxels(Settings::steel(), profile),
-            Some(Material::Aluminium) => welding.with_voxels(Settings::aluminium(), profile),
-            None => welding.settings(profile)?,
-        };
-        let settings = Settings {
+        let setup = Setup {
+            material: self.material.map(|material| match material {
+                Material::Steel => distortion::Material::Steel,
+                Material::Aluminium => distortion::Material::Aluminium,
+            }),
+            clamps: match self.clamps {
+                Clamps::Corners => distortion::Clamps::Corners,
+                Clamps::Edge => distortion::Clamps::Edge,
+                Clamps::None => distortion::Clamps::None,
+            },
+            clamp_stiffness: self.clamp_stiffness,
             calibration: self.calibration,
-            voxel: self.voxel.unwrap_or(settings.voxel),
-            voxel_height: self.voxel_height.unwrap_or(settings.voxel_height),
-            most_steps: self.steps.unwrap_or(settings.most_steps),
-            ..settings
+            voxel: self.voxel,
+            voxel_height: self.voxel_height,
+            most_steps: self.steps,
         };
-        let (stiffness, (radius, spacing)) = (distort::DVec3::splat(self.clamp_stiffness), CLAMP);
-        let clamps = match self.clamps {
-            Clamps::Corners => welding.plate.clamped_at_corners(radius, stiffness),
-            Clamps::Edge => welding.plate.clamped_along_edge(spacing, radius, stiffness),
-            Clamps::None => Vec::new(),
-        };
-        let bent = distort::build(&welding.plate, &welding.beads, &clamps, &settings, &mut |fraction| {
-            task.step(Stage::Distort, fraction).is_ok()
-        })?;
-        Ok((welding.beads.len(), bent))
+        Ok((welding.beads.len(), setup.build(&welding, profile, task)?))
     }
 
     /// Bends a part against what a plan of it does, plans it anew, bends it against what that does, and so on; writes the one of which

@@ -1,5 +1,6 @@
 //! Numbers of the library as Python sees them, by the buffer protocol: `numpy.asarray` takes their memory as it is.
 
+use glam::DVec3;
 use pyo3::exceptions::PyBufferError;
 use pyo3::ffi;
 use pyo3::prelude::*;
@@ -12,6 +13,12 @@ pub(crate) trait Numbers: Send + Sync + 'static {
 }
 
 impl Numbers for Vec<f64> {
+    fn bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(self)
+    }
+}
+
+impl Numbers for Vec<DVec3> {
     fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(self)
     }
@@ -62,6 +69,11 @@ impl Array {
         let row = columns * item.size();
         let shape = vec![numbers.bytes().len() as isize / row, columns];
         Self { numbers: Box::new(numbers), item, shape, strides: vec![row, item.size()] }
+    }
+
+    /// Places, a row of three numbers each.
+    pub(crate) fn places(places: Vec<DVec3>) -> Self {
+        Self::rows(places, Item::Float, 3)
     }
 
     /// One number, seen `count` times.

@@ -11,7 +11,7 @@
 //! | `program` | programs from any source, read back as layers |
 //! | `judge` | what layers would build: height fields, comparisons |
 //! | `scan`, `build` | scans compared with the part and followed by layers; plans welded in the height model |
-//! | `heat`, `reach` | how warm the metal becomes, and whether a robot can weld it |
+//! | `heat`, `distort`, `reach` | how warm the metal becomes, how it bends, and whether a robot can weld it |
 //! | `bead_library` | measured beads |
 //!
 //! Files are read by the Python around it (`python/beadwright`), which is also what users see; no name here is meant for them.
@@ -19,6 +19,7 @@
 mod array;
 mod bead_library;
 mod build;
+mod distort;
 mod error;
 mod heat;
 mod judge;
@@ -43,6 +44,8 @@ mod _core {
     use crate::bead_library::{BeadLibrary, demonstration_csv};
     #[pymodule_export]
     use crate::build::{Builds, build};
+    #[pymodule_export]
+    use crate::distort::{Distortion, distort};
     #[pymodule_export]
     use crate::heat::{Heat, heat};
     #[pymodule_export]

@@ -1,6 +1,6 @@
 //! Scans of a build: compared with the part, and followed by corrected layers.
 
-use crate::array::{Array, Item, Numbers};
+use crate::array::Array;
 use crate::error::{Refuse, exception, raise};
 use crate::part::{Part, unit_of};
 use crate::plan::Plan;
@@ -50,15 +50,7 @@ impl Scan {
 
     #[getter]
     fn points(&self) -> Array {
-        Array::rows(Points(self.0.points.clone()), Item::Float, 3)
-    }
-}
-
-struct Points(Vec<DVec3>);
-
-impl Numbers for Points {
-    fn bytes(&self) -> &[u8] {
-        bytemuck::cast_slice(&self.0)
+        Array::places(self.0.points.clone())
     }
 }
 

@@ -14,6 +14,7 @@
 //! | `zone` | the shrinkage of a bead, shared out |
 //! | [`build`](mod@build) | birth, shrinkage, balance and release |
 //! | [`figures`] | [`Distortion`]: shapes, lift, deviation, balances; calibration by a scan |
+//! | `surface` | the faces between metal and air |
 //! | [`bending`] | [`Bending`]: how the part deviates at any place |
 //! | [`eccentricity`](mod@eccentricity) | where the heat is |
 //! | [`body`] | [`Body`]: one elastic body of voxels, for questions of other kinds |
@@ -50,6 +51,7 @@ mod multigrid;
 mod real;
 mod rigid;
 pub mod settings;
+mod surface;
 mod system;
 mod vector;
 mod zone;

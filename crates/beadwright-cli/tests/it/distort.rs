@@ -18,6 +18,9 @@ fn the_plate_of_a_plan_bends() {
     let text = said(&beadwright(at, &rough));
     assert!(text.contains("lift of the plate, released") && text.contains("deviation of the part"), "{text}");
     assert!(text.contains("thermal eccentricity"), "{text}");
+    said(&beadwright(at, &[&rough[..], &["--page", "bent.html"]].concat()));
+    let page = std::fs::read_to_string(at.join("bent.html")).unwrap();
+    assert!(page.contains("class=\"card bent\"") && page.contains("\"released\""), "no bent body on the page");
     let lift = |more: &[&str]| {
         let text = said(&beadwright(at, &[&rough[..], &["--json"], more].concat()));
         let all: serde_json::Value = serde_json::from_str(&text).unwrap();

@@ -12,6 +12,7 @@ from beadwright._errors import BeadwrightError
 from beadwright._progress import Progress
 from beadwright._bead import Bead, BeadLibrary, demonstration_csv
 from beadwright._build import Builds, Noise, build
+from beadwright._distort import BentShape, Distortion, distort
 from beadwright._executors import LocalExecutor, RayExecutor
 from beadwright._heat import Heat, heat
 from beadwright._judging import Comparison, Fault, HeightField, Judged, check, compare, height_field, simulate
@@ -30,9 +31,11 @@ __all__ = [
     "Bead",
     "BeadLibrary",
     "BeadwrightError",
+    "BentShape",
     "Builds",
     "Comparison",
     "Deviation",
+    "Distortion",
     "Fault",
     "Finding",
     "Heat",
@@ -63,6 +66,7 @@ __all__ = [
     "compare",
     "demonstration_csv",
     "deviation",
+    "distort",
     "examples",
     "heat",
     "height_field",

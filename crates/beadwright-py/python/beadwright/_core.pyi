@@ -15,6 +15,7 @@ __all__ = [
     "BeadLibrary",
     "Builds",
     "Deviation",
+    "Distortion",
     "Heat",
     "Judged",
     "Layer",
@@ -33,6 +34,7 @@ __all__ = [
     "compare",
     "demonstration_csv",
     "deviation",
+    "distort",
     "example_names",
     "example_stl",
     "faults",
@@ -286,6 +288,26 @@ class Heat:
     def along(self, layer: int, number: int) -> Array: ...
 
 def heat(plan: Plan, limit: float | None, threads: int | None, progress: _Step) -> Heat: ...
+
+@final
+class Distortion:
+    @property
+    def values(self) -> dict[str, Any]: ...
+    def moved(self, released: bool) -> tuple[Array, Array]: ...
+    @property
+    def html(self) -> str: ...
+
+def distort(
+    plan: Plan,
+    clamps: str,
+    material: str | None,
+    calibration: float,
+    voxel: float | None,
+    voxel_height: float | None,
+    steps: int | None,
+    threads: int | None,
+    progress: _Step,
+) -> Distortion: ...
 
 @final
 class Reach:

@@ -1,7 +1,11 @@
 //! A plan as input of the distortion model: beads with their heat on a plate, and the settings that suit a profile; and a part bent
-//! beforehand ([`compensate`]).
+//! beforehand ([`compensate`]); its [`page`](mod@page).
 
 pub mod compensate;
+pub mod page;
+mod setup;
+
+pub use setup::{Clamps, Material, Setup};
 
 use crate::heat::{self, HeatError, Moment};
 use crate::layer::Layer;

@@ -1,9 +1,5 @@
 // What beads can be coloured by: the value of a piece, the range over the whole part, and its words.
 
-// Violet to yellow, of rising lightness (after matplotlib's "viridis", less its ends, which would vanish on the page).
-const RAMP = [[71, 45, 123], [49, 104, 142], [32, 146, 140], [94, 201, 98], [223, 227, 24]];
-// Dark violet to yellow, of rising lightness, so that it reads in grey too (after matplotlib's "inferno").
-const EMBER = [[40, 11, 84], [120, 28, 109], [188, 55, 84], [237, 105, 37], [251, 180, 26]];
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
 // In the order of their numbers (encode.rs). Their colours are those of the studio: people without red, green or blue cones tell them apart too.
 const KINDS = ["contour", "infill", "skeleton", "wall"];
@@ -18,12 +14,6 @@ function readColours() {
 
 const channels = hex => [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16));
 const rgb = c => `rgb(${c.map(Math.round).join(" ")})`;
-const mix = (c, to, part) => c.map((v, i) => v + (to[i] - v) * part);
-
-function rampAt(part, ramp = RAMP) {
-  const at = Math.min(Math.max(part, 0), 1) * (ramp.length - 1), i = Math.min(Math.floor(at), ramp.length - 2);
-  return mix(ramp[i], ramp[i + 1], at - i);
-}
 
 const metres = mm => mm >= 1000 ? `${(mm / 1000).toFixed(2)} m` : `${mm.toFixed(0)} mm`;
 const area = mm2 => mm2 >= 1e5 ? `${(mm2 / 100).toFixed(1)} cm²` : `${mm2.toFixed(1)} mm²`;

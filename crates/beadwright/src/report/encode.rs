@@ -164,6 +164,11 @@ fn differences(layer: &Layer, origin: DVec2, resolution: f64) -> Vec<[i16; 2]> {
     points(layer).map(step).collect()
 }
 
+/// Bytes as base64 of what they deflate to.
+pub(super) fn deflated(bytes: &[u8]) -> String {
+    STANDARD.encode(deflate(Vec::new(), bytes))
+}
+
 fn deflate(head: Vec<u8>, body: &[u8]) -> Vec<u8> {
     let mut encoder = DeflateEncoder::new(head, Compression::fast());
     // Writing into memory does not fail.

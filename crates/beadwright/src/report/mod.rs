@@ -8,6 +8,7 @@
 //! | [`rows`] | totals as people read them |
 //! | `words` | what the terms of the figures mean |
 //! | [`svg`] | one layer as a standalone picture |
+//! | [`bent`] | a body that bends, for a page |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
 //! | [`angles`] | plots over the raster angle |
 //! | [`bead_window`] | width/height of a bead library over its first input |
@@ -16,13 +17,14 @@
 //! | [`reach`] | joint angles and margins over a program |
 //! | [`steps`] | the steps of the hybrid and of the loop as pictures |
 //! | `page.html`, `page.css` | the page |
-//! | `layers.js`, `layout.js`, `lie.js`, `heat.js`, `colour.js` | reading layers, those of the page, where they lie, height fields, what beads are coloured by |
+//! | `layers.js`, `layout.js`, `lie.js`, `heat.js`, `ramp.js`, `colour.js` | reading layers, those of the page, where they lie, height fields, ramps of colours, what beads are coloured by |
 //! | `picture.js`, `pick.js`, `timeline.js`, `page.js` | a layer from above, the pass pointed out, the build in time, the controls |
 //! | `camera.js`, `steer.js`, `strands.js`, `shaders.js`, `scene.js`, `pace.js` | beads in 3-D (WebGL 2): camera and its handling, points, programs, buffers, how much is drawn |
-//! | `solid.js`, `twins.js` | the part in 3-D on the report; strategies side by side on other pages |
+//! | `solid.js`, `twins.js`, `bent.js` | the part in 3-D on the report; on other pages strategies side by side, and a body that bends |
 
 pub mod angles;
 pub mod bead_window;
+pub mod bent;
 pub mod encode;
 mod lie;
 pub mod overhang;
@@ -176,6 +178,7 @@ impl Report {
                     include_str!("layout.js"),
                     include_str!("lie.js"),
                     include_str!("heat.js"),
+                    include_str!("ramp.js"),
                     include_str!("colour.js"),
                     include_str!("picture.js"),
                     include_str!("camera.js"),

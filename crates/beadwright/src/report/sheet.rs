@@ -1,5 +1,6 @@
 //! A page of pictures and tables: `compare.html`, `simulate.html` and the pages of `reproduce`.
 
+use super::bent::Bent;
 use super::{encode, escape, words};
 use crate::deposit::Picture;
 use crate::template;
@@ -63,6 +64,16 @@ impl Sheet {
         ))
     }
 
+    /// A body that bends, in 3-D, under a slider that exaggerates how far it moves.
+    pub fn bent(&mut self, bent: &Bent) -> &mut Self {
+        let names: Vec<String> = bent.shapes.iter().map(|(name, _)| json(name)).collect();
+        self.push(&format!(
+            "<div class=\"card bent\"><script type=\"application/json\">{{\"shapes\":[{}],\"body\":\"{}\"}}</script></div>",
+            names.join(","),
+            bent.encoded()
+        ))
+    }
+
     /// Finished SVGs side by side, each with what it shows.
     pub fn svgs(&mut self, pictures: &[(String, String)]) -> &mut Self {
         let figure = |(caption, svg): &(String, String)| {
@@ -115,6 +126,7 @@ impl Sheet {
 
     /// The scripts; those of the 3-D view only where there is one.
     fn scripts(&self) -> String {
+        let flat = [include_str!("inflate.js"), include_str!("heat.js"), include_str!("sheet.js")];
         let deep = [
             include_str!("layers.js"),
             include_str!("lie.js"),
@@ -124,11 +136,17 @@ impl Sheet {
             include_str!("shaders.js"),
             include_str!("scene.js"),
             include_str!("pace.js"),
-            include_str!("twins.js"),
         ];
-        let flat = [include_str!("inflate.js"), include_str!("heat.js"), include_str!("sheet.js")];
-        let deep = deep.iter().filter(|_| self.body.contains("class=\"card beads\""));
-        flat.iter().chain(deep).copied().collect()
+        let (beads, bent) = (self.has("beads"), self.has("bent"));
+        let deep = deep.iter().filter(|_| beads || bent);
+        let twins = beads.then_some(include_str!("twins.js"));
+        let bent = bent.then_some([include_str!("ramp.js"), include_str!("bent.js")]);
+        flat.iter().chain(deep).copied().chain(twins).chain(bent.into_iter().flatten()).collect()
+    }
+
+    /// Whether it has a card of this class.
+    fn has(&self, class: &str) -> bool {
+        self.body.contains(&format!("class=\"card {class}\""))
     }
 
     fn push(&mut self, html: &str) -> &mut Self {

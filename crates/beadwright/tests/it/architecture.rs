@@ -66,7 +66,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["settings"],
             &["metal"],
             &["figures", "zone"],
-            &["bending", "build"],
+            &["bending", "build", "surface"],
         ],
     ),
     (
@@ -74,11 +74,12 @@ const CRATES: &[(&str, &[&[&str]])] = &[
         &[
             // Holds the settings of all stages of the crates below, which can be used without it.
             &["profile"],
-            &["distortion", "metrics"],
+            &["metrics"],
             &["plan"],
             &["plan_file", "check"],
             &["report"],
-            &["adapt", "as_built", "export", "files", "simulate"],
+            &["as_built", "distortion", "export", "files", "simulate"],
+            &["adapt"],
             &["build", "trial"],
             &["compare"],
             &["read_back"],

@@ -9,5 +9,6 @@ mod eccentricity;
 mod errors;
 mod parts;
 mod steps;
+mod surface;
 mod symmetry;
 mod tendon;
