@@ -75,6 +75,7 @@ mod rapid;
 mod readback;
 mod readback_robots;
 mod readers;
+mod record;
 mod repair;
 mod report;
 mod report_browser;
