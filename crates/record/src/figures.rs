@@ -77,13 +77,13 @@ pub(crate) fn power(logs: &[Aligned<'_>], stretches: &[Span]) -> Option<f64> {
     logs.iter().find_map(of_log).or_else(of_means)
 }
 
-/// Oldest temperature that still counts as that before a pass, s.
-const RECENT: f64 = 5.0;
+/// Temperatures from the first to the second time before a pass count, s: later ones may be of the arc already.
+const BEFORE: [f64; 2] = [5.0, 0.5];
 
 /// Temperature just before a pass, and the greatest during it, °C.
 pub(crate) fn temperatures(logs: &[Aligned<'_>], welded: &Welded) -> [Option<f64>; 2] {
     let Span { start, end, .. } = welded.span;
-    let before = values(logs, Quantity::Temperature, &[Span::new(start - RECENT, start)]);
+    let before = values(logs, Quantity::Temperature, &[Span::new(start - BEFORE[0], start - BEFORE[1])]);
     let during = values(logs, Quantity::Temperature, &[Span::new(start, end)]);
     let peak = Measured::of(during.into_iter().map(|[_, value]| value)).map(|measured| measured.max);
     [before.last().map(|[_, value]| *value), peak]

@@ -35,11 +35,11 @@ const AGAIN: f64 = 0.3;
 /// A length or an offset that does not agree at all.
 const WRONG: [f64; 2] = [0.6, 1.0];
 /// Most pairs that are looked at; beyond, those far from the diagonal are left out.
-const MOST_CELLS: usize = 60_000_000;
+const MOST_CELLS: usize = 40_000_000;
 
-/// The cheapest way to some expected and some seen arcs, and the offset of its last pair, s.
+/// A way to some expected and some seen arcs: what it costs, and its last pair.
 #[derive(Debug, Clone, Copy)]
-struct Cell {
+struct Way {
     cost: f64,
     last: Option<Last>,
 }
@@ -50,72 +50,85 @@ struct Last {
     expected: usize,
 }
 
-/// How a cell was reached.
-const MISSING: u8 = 0;
-const EXTRA: u8 = 1;
-/// This, less one, and the number of arcs seen for the expected one.
-const PAIRED: u8 = 1;
+/// The cheapest ways to some expected and some seen arcs. That which ends with a pair is kept beside a cheaper one that does not:
+/// its offset may be that of all pairs to come.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    any: Way,
+    paired: Way,
+}
 
-const NOWHERE: Cell = Cell { cost: f64::INFINITY, last: None };
+/// How a cell was reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Step {
+    Begin,
+    Missing,
+    Extra,
+    Paired,
+}
+
+/// The last step of both ways to a cell; that of the paired one is a number of arcs, after a way that ended with a pair or any.
+#[derive(Debug, Clone, Copy)]
+struct Trail {
+    any: Step,
+    count: u8,
+    after_pair: bool,
+}
+
+const NO_WAY: Way = Way { cost: f64::INFINITY, last: None };
+const NOWHERE: Cell = Cell { any: NO_WAY, paired: NO_WAY };
 
 /// The pairs of two sequences, in order.
 pub(crate) fn pairs(expected: &[Span], seen: &[Span], rules: &Rules) -> Vec<Pair> {
     let (rows, columns) = (expected.len() + 1, seen.len() + 1);
     let band = Band { rows, columns, half: (MOST_CELLS / rows / 2).max(MOST + 1) };
-    let mut way: Vec<Vec<u8>> = Vec::with_capacity(rows);
-    let mut before: Vec<Cell> = Vec::new();
+    let mut trails: Vec<Vec<Trail>> = Vec::with_capacity(rows);
+    let mut above: Vec<Cell> = Vec::new();
     for row in 0..rows {
-        let (range, above) = (band.range(row), band.range(row.saturating_sub(1)));
+        let (range, before) = (band.range(row), band.range(row.saturating_sub(1)));
         let mut own: Vec<Cell> = Vec::with_capacity(range.len());
         let mut steps = Vec::with_capacity(range.len());
-        for column in range.clone() {
+        for column in range {
             let up = |back: usize| {
-                let at = column.checked_sub(back).filter(|at| row > 0 && above.contains(at));
-                at.map_or(NOWHERE, |at| before[at - above.start])
+                let at = column.checked_sub(back).filter(|at| row > 0 && before.contains(at));
+                at.map_or(NOWHERE, |at| above[at - before.start])
             };
-            let mut best = (NOWHERE, MISSING);
-            let mut offer = |cell: Cell, step: u8| {
-                if cell.cost < best.0.cost {
-                    best = (cell, step);
-                }
-            };
-            if (row, column) == (0, 0) {
-                offer(Cell { cost: 0.0, last: None }, MISSING);
-            }
-            offer(Cell { cost: up(0).cost + rules.missing, ..up(0) }, MISSING);
-            if let Some(left) = own.last() {
-                offer(Cell { cost: left.cost + rules.extra, ..*left }, EXTRA);
-            }
-            for count in 1..=MOST.min(column) {
-                let from = up(count);
-                if row > 0 && from.cost < f64::INFINITY {
-                    let cell = rules.paired(expected, row - 1, &seen[column - count..column], from);
-                    offer(cell, PAIRED + count as u8);
-                }
-            }
-            own.push(best.0);
-            steps.push(best.1);
+            let (paired, count, after_pair) = rules.best_pair(expected, seen, (row, column), &up);
+            let begin = if (row, column) == (0, 0) { Way { cost: 0.0, last: None } } else { NO_WAY };
+            let (missing, extra) = (up(0).any, own.last().map_or(NO_WAY, |left| left.any));
+            let ways = [
+                (begin, Step::Begin),
+                (paired, Step::Paired),
+                (Way { cost: missing.cost + rules.missing, ..missing }, Step::Missing),
+                (Way { cost: extra.cost + rules.extra, ..extra }, Step::Extra),
+            ];
+            let first = ways[0];
+            let (any, step) =
+                ways.into_iter().fold(first, |best, way| if way.0.cost < best.0.cost { way } else { best });
+            own.push(Cell { any, paired });
+            steps.push(Trail { any: step, count, after_pair });
         }
-        before = own;
-        way.push(steps);
+        above = own;
+        trails.push(steps);
     }
-    walk(&band, &way)
+    walk(&band, &trails)
 }
 
 /// The way back from the last cell.
-fn walk(band: &Band, way: &[Vec<u8>]) -> Vec<Pair> {
-    let (mut row, mut column, mut found) = (band.rows - 1, band.columns - 1, Vec::new());
+fn walk(band: &Band, trails: &[Vec<Trail>]) -> Vec<Pair> {
+    let (mut row, mut column, mut found, mut pair) = (band.rows - 1, band.columns - 1, Vec::new(), false);
     while row > 0 || column > 0 {
-        match way[row][column - band.range(row).start] {
-            EXTRA => column -= 1,
-            MISSING if row > 0 => row -= 1,
-            step if step > PAIRED && row > 0 => {
-                let first = column - usize::from(step - PAIRED);
+        let trail = trails[row][column - band.range(row).start];
+        match if pair { Step::Paired } else { trail.any } {
+            Step::Missing => row -= 1,
+            Step::Extra => column -= 1,
+            Step::Paired => {
+                let first = column - usize::from(trail.count);
                 row -= 1;
                 found.push(Pair { expected: row, seen: first..column });
-                column = first;
+                (column, pair) = (first, trail.after_pair);
             }
-            _ => break,
+            Step::Begin => break,
         }
     }
     found.reverse();
@@ -139,8 +152,31 @@ impl Band {
 }
 
 impl Rules {
-    /// The cell after an expected arc for which these were seen.
-    fn paired(&self, expected: &[Span], index: usize, seen: &[Span], from: Cell) -> Cell {
+    /// The cheapest way to a cell that ends with a pair, its number of seen arcs, and whether a pair comes before.
+    fn best_pair(
+        &self,
+        expected: &[Span],
+        seen: &[Span],
+        (row, column): (usize, usize),
+        up: &dyn Fn(usize) -> Cell,
+    ) -> (Way, u8, bool) {
+        let mut best = (NO_WAY, 1, false);
+        for count in 1..=MOST.min(column) {
+            let from = up(count);
+            for (way, after_pair) in [(from.paired, true), (from.any, false)] {
+                if way.cost < best.0.cost {
+                    let paired = self.paired(expected, row - 1, &seen[column - count..column], way);
+                    if paired.cost < best.0.cost {
+                        best = (paired, count as u8, after_pair);
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// The way after an expected arc for which these were seen.
+    fn paired(&self, expected: &[Span], index: usize, seen: &[Span], from: Way) -> Way {
         let (own, length) = (&expected[index], self.length_part(&expected[index], seen));
         let mut offset = offset(own, seen);
         let apart = match from.last {
@@ -157,7 +193,7 @@ impl Rules {
         };
         let again = AGAIN * (seen.len() - 1) as f64;
         let wrong = WRONG[0] * length * length / (1.0 + length * length) + WRONG[1] * apart.abs() / (1.0 + apart.abs());
-        Cell { cost: from.cost + wrong + again, last: Some(Last { offset, expected: index }) }
+        Way { cost: from.cost + wrong + again, last: Some(Last { offset, expected: index }) }
     }
 
     /// By how much lengths differ, in units of what is allowed.

@@ -53,9 +53,12 @@ impl Welding {
         let spans = if commanded || !measured { leader.spans() } else { burning.clone() };
         let labels = if commanded { labels(leader.source, leader, planned) } else { None };
         let of_pass = match &labels {
-            Some(labels) => labelled(labels, planned, &spans),
+            Some(labels) => labelled(labels),
             None => told_apart(planned, &spans),
         };
+        let of_pass = of_pass
+            .into_iter()
+            .flat_map(|(index, seen)| tries(&planned[index], &spans, seen).into_iter().map(move |seen| (index, seen)));
         let mut passes: Vec<Welded> = Vec::new();
         let mut taken = vec![false; spans.len()];
         for (index, seen) in of_pass {
@@ -150,28 +153,25 @@ fn labels(source: &Source, log: &Aligned<'_>, planned: &[PlannedPass]) -> Option
     (2 * named > labels.len()).then_some(labels)
 }
 
-/// Arcs by their labels: those of one pass together if they make one pass, or else each as a try of its own.
-fn labelled(labels: &[Option<usize>], planned: &[PlannedPass], spans: &[Span]) -> Vec<(usize, Range<usize>)> {
+/// Arcs by their labels.
+fn labelled(labels: &[Option<usize>]) -> Vec<(usize, Range<usize>)> {
     let (mut found, mut begin) = (Vec::new(), 0);
     for run in labels.chunk_by(|a, b| a == b) {
-        let rows = begin..begin + run.len();
-        begin = rows.end;
-        let Some(index) = run[0] else { continue };
-        if makes_one(&planned[index], &spans[rows.clone()]) {
-            found.push((index, rows));
-        } else {
-            found.extend(rows.map(|at| (index, at..at + 1)));
-        }
+        found.extend(run[0].map(|index| (index, begin..begin + run.len())));
+        begin += run.len();
     }
     found
 }
 
-/// Whether these arcs last as long as the pass, with or without the breaks between them.
-fn makes_one(pass: &PlannedPass, seen: &[Span]) -> bool {
-    let burned = seen.iter().map(Span::seconds).sum();
-    as_planned(pass, seen[seen.len() - 1].end - seen[0].start) || as_planned(pass, burned)
+/// The arcs of a pass: all together, or each as a try of its own where only the last one is as long as the pass.
+fn tries(pass: &PlannedPass, spans: &[Span], seen: Range<usize>) -> Vec<Range<usize>> {
+    let own = &spans[seen.clone()];
+    let (first, last) = (&own[0], &own[own.len() - 1]);
+    let together = as_planned(pass, last.end - first.start) || as_planned(pass, own.iter().map(Span::seconds).sum());
+    if together || !as_planned(pass, last.seconds()) { vec![seen] } else { seen.map(|at| at..at + 1).collect() }
 }
 
+/// Whether a pass may take so long, s.
 fn as_planned(pass: &PlannedPass, seconds: f64) -> bool {
     let length = pass.seconds();
     (seconds - length).abs() <= PACE.0 + PACE.1 * length

@@ -22,6 +22,9 @@ use std::ops::Range;
 /// Rows that a log may have.
 pub const MOST_ROWS: usize = 200_000_000;
 
+/// The mark with which some programs begin UTF-8.
+const MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Names of the column with the times.
 const TIMES: [&str; 4] = ["time", "timestamp", "t", "date_time"];
 
@@ -100,6 +103,9 @@ impl Source {
     /// # Errors
     /// [`RecordError`], which names the line.
     pub fn read(name: &str, mut text: impl BufRead, called: &[(Quantity, String)]) -> Result<Self, RecordError> {
+        if text.fill_buf().is_ok_and(|start| start.starts_with(MARK)) {
+            text.consume(MARK.len());
+        }
         let between = {
             let start = text.fill_buf().map_err(|error| read_error(0, &error))?;
             let lines = start.split(|byte| *byte == b'\n').map(String::from_utf8_lossy);
@@ -159,7 +165,7 @@ struct Header {
 
 impl Header {
     fn of(row: &ByteRecord, called: &[(Quantity, String)]) -> Result<Self, String> {
-        let cells: Vec<String> = row.iter().map(|cell| text(cell).trim_start_matches('\u{feff}').to_owned()).collect();
+        let cells: Vec<String> = row.iter().map(|cell| text(cell).into_owned()).collect();
         let columns: Vec<(String, String)> = cells.iter().map(|cell| name_and_unit(cell)).collect();
         let find = |names: &[&str]| columns.iter().position(|(name, _)| names.contains(&name.as_str()));
         let Some(time) = find(&TIMES) else {

@@ -3,6 +3,7 @@
 
 use super::{Event, Source};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// What was found wrong with the rows of a log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
@@ -46,6 +47,8 @@ struct Pieces {
     begins: Vec<usize>,
     /// Latest time since then, s.
     known: f64,
+    /// Longest time between two rows between which none is missing, s.
+    longest: f64,
     doubled: usize,
     late: usize,
 }
@@ -54,10 +57,12 @@ impl Pieces {
     fn of(source: &Source) -> Self {
         let times = &source.times;
         let steps: Vec<usize> = (1..times.len()).filter(|&row| times[row] < times[row - 1]).collect();
+        let longest = longest_step(source);
         let mut pieces = Self {
             order: Vec::with_capacity(times.len()),
             begins: vec![0],
             known: f64::NEG_INFINITY,
+            longest,
             doubled: 0,
             late: 0,
         };
@@ -72,27 +77,35 @@ impl Pieces {
     }
 
     /// Takes rows whose times do not decrease; `next` is the time of the row after them.
-    fn take(&mut self, source: &Source, rows: std::ops::Range<usize>, next: Option<f64>) {
+    fn take(&mut self, source: &Source, rows: Range<usize>, next: Option<f64>) {
         let times = &source.times;
         let segment = self.begins.last().copied().unwrap_or_default();
-        let known = self.known;
-        let behind = rows.start + times[rows.clone()].partition_point(|time| *time <= known);
-        let back = known - times[rows.start];
-        let overlap = rows.start..behind;
-        let late = back <= LATE || next.is_some_and(|next| next >= known && behind == rows.end);
-        if back > 0.0 && !late && !self.is_copy(source, segment, overlap.clone()) {
-            self.end_segment(source);
-            self.begins.push(self.order.len());
-            self.known = f64::NEG_INFINITY;
-        } else if back > 0.0 {
-            self.late += overlap.len();
+        if times[rows.start] < self.known {
+            let behind = rows.start + times[rows.clone()].partition_point(|time| *time <= self.known);
+            if self.is_late(times, &rows, behind, next) || self.is_copy(source, segment, rows.start..behind) {
+                self.late += behind - rows.start;
+            } else {
+                self.end_segment(source);
+                self.begins.push(self.order.len());
+                self.known = f64::NEG_INFINITY;
+            }
         }
         self.known = self.known.max(times[rows.end - 1]);
         self.order.extend(rows.map(|row| row as u32));
     }
 
+    /// Whether rows, those before `behind` of which have times that are past, came late; otherwise the clock may have been set back. After
+    /// a late block the log goes on from where it was, and after the clock was set back, from there.
+    fn is_late(&self, times: &[f64], rows: &Range<usize>, behind: usize, next: Option<f64>) -> bool {
+        let goes_on = match behind < rows.end {
+            true => times[behind] - times[behind - 1] > self.longest,
+            false => next.is_some_and(|next| next >= self.known),
+        };
+        goes_on || self.known - times[rows.start] <= LATE
+    }
+
     /// Whether most of these rows are in the segment already.
-    fn is_copy(&self, source: &Source, segment: usize, rows: std::ops::Range<usize>) -> bool {
+    fn is_copy(&self, source: &Source, segment: usize, rows: Range<usize>) -> bool {
         let mut known: Vec<u32> = self.order[segment..].to_vec();
         let times = &source.times;
         known.sort_by(|a, b| times[*a as usize].total_cmp(&times[*b as usize]));

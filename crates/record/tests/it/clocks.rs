@@ -35,8 +35,8 @@ fn offsets_and_drifts_are_those_of_the_cell() {
             // By how much it runs slow is minus by how much it runs fast.
             assert!((known.drift + 1e6 * clock.fast).abs() < 30.0, "seed {seed}: {} {}", known.drift, clock.fast);
             let ahead = clocks[0].at(0.0) - clock.at(0.0);
-            // The power source needs 0.1 s to strike the arc.
-            assert!((known.offset - ahead).abs() < 0.15, "seed {seed}: {} {ahead}", known.offset);
+            // The power source needs 0.1 s to strike the arc, and is asked a little later.
+            assert!((known.offset - ahead).abs() < 0.2, "seed {seed}: {} {ahead}", known.offset);
             let drifts = record.findings.iter().any(|f| f.kind == Kind::ClockDrift && f.sentence.contains(&known.name));
             assert_eq!(drifts, known.drift.abs() >= 100.0);
         }

@@ -86,20 +86,24 @@ fn skipped_repeated_and_foreign_arcs_are_told_apart() {
     let given_up = cell.done[at].start;
     cell.done[at..].iter_mut().for_each(|done| (done.start, done.end) = (done.start + 600.0, done.end + 600.0));
     cell.done.insert(at, crate::cell::Done { planned: 12, start: given_up, end: given_up + 2.0 });
-    let record = joined(&cell, Some(true));
-    let kinds: Vec<_> = record.findings.iter().map(|f| (f.kind, f.pass)).collect();
-    assert_eq!(
-        kinds,
-        [(Kind::NotWelded, Some(7)), (Kind::Repeated, Some(12)), (Kind::Stop, Some(12))],
-        "{:?}",
-        record.findings
-    );
-    assert!(record.passes[12].wait[1].unwrap() > 590.0);
-    // Without the controller, the arc that was given up belongs to no pass.
-    let record = joined(&cell, None);
+    for controller in [None, Some(false), Some(true)] {
+        let record = joined(&cell, controller);
+        let kinds: Vec<_> = record.findings.iter().map(|f| (f.kind, f.pass)).collect();
+        let expected = [(Kind::NotWelded, Some(7)), (Kind::Repeated, Some(12)), (Kind::Stop, Some(12))];
+        assert_eq!(kinds, expected, "{controller:?}: {:?}", record.findings);
+        assert!(record.passes[12].wait[1].unwrap() > 590.0);
+    }
+    // An arc between two passes, to try the torch.
+    let (before, after) = (cell.done[20].end, cell.done[21].start);
+    let text = cell.power_log(&TRUE, 50.0, &[]);
+    let tried = |line: &str| match line.split(',').next().unwrap().parse::<f64>() {
+        Ok(time) if (before + 1.0..after - 1.0).contains(&time) => format!("{time},90,20,0\n"),
+        _ => format!("{line}\n"),
+    };
+    let text: String = text.lines().map(tried).collect();
+    let record = join(&plan, &[log("power.csv", &text)], &Settings::default()).unwrap();
     let extra = found(&record, Kind::Extra);
-    assert!(extra.len() == 1 && (extra[0].time.unwrap()[0] - given_up).abs() < 0.2, "{:?}", record.findings);
-    assert_eq!(found(&record, Kind::NotWelded).iter().map(|f| f.pass).collect::<Vec<_>>(), [Some(7)]);
+    assert!(extra.len() == 1 && (extra[0].time.unwrap()[0] - before - 1.0).abs() < 0.1, "{:?}", record.findings);
 }
 
 #[test]
@@ -113,8 +117,8 @@ fn notes_and_temperatures_come_to_their_pass() {
     let noted: Vec<usize> = (0..plan.len()).filter(|&k| record.passes[k].notes == ["nozzle cleaned"]).collect();
     assert_eq!(noted, [5]);
     for (k, row) in record.passes.iter().enumerate().skip(1) {
-        // It cools from 1450 towards 120 °C with 1.5 s.
-        let wait = cell.done[k].start - cell.done[k - 1].end;
+        // It cools from 1450 towards 120 °C with 1.5 s, and is read half a second before the arc.
+        let wait = cell.done[k].start - cell.done[k - 1].end - 0.5;
         let expected = 120.0 + 1330.0 * (-wait / 1.5).exp();
         let before = row.before[1].unwrap();
         assert!((before - expected).abs() < 0.15 * (expected - 100.0), "{k}: {before} {expected}");

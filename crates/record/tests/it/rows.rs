@@ -9,7 +9,7 @@ fn the_same_log_in_other_spellings_is_the_same() {
     let same = [
         "time (ms);I (A);wire feed speed (mm/min)\n0;0;0\n500;180,5;8400\n1500;181;8500\n",
         "\u{feff}# a remark\r\ntime_s\tcurrent\twfs\r\n0\t0\t0\r\n0,5\t180,5\t8,4\r\n\r\n1,5\t181\t8,5\r\n",
-        "time_min,\"current (kA)\",feed (mm/s)\n0,0,0\n0.0083333333333333,0.1805,140\n0.025,0.181,141.6666667\n",
+        "time (min),\"current (kA)\",feed (mm/s)\n0,0,0\n0.0083333333333333,0.1805,140\n0.025,0.181,141.6666667\n",
     ];
     for text in same {
         let other = log("a", text);
@@ -45,8 +45,8 @@ fn doubled_and_late_rows_change_nothing() {
     let late: Vec<&str> = lines.drain(4000..4100).collect();
     lines.splice(4500..4500, late);
     let mixed = log("power.csv", &lines.iter().map(|line| format!("{line}\n")).collect::<String>());
-    assert_eq!((&mixed.times, &mixed.columns), (&whole.times, &whole.columns));
     assert_eq!((mixed.tally.doubled, mixed.tally.set_back), (600, 0), "{:?}", mixed.tally);
+    assert!(mixed.times == whole.times && mixed.columns == whole.columns);
     assert!((100..=120).contains(&mixed.tally.late), "{:?}", mixed.tally);
     let settings = Settings::default();
     let [a, b] = [&whole, &mixed].map(|log| join(&plan, std::slice::from_ref(log), &settings).unwrap());
