@@ -83,12 +83,12 @@ fn parse_column(text: &str) -> Result<(Quantity, String), String> {
 
 fn parse_window(text: &str) -> Result<(Quantity, f64), String> {
     let (name, percent) = parse_pair(text)?;
-    let percent = percent
-        .trim_end_matches('%')
-        .trim()
-        .parse()
-        .map_err(|_| format!("\"{percent}\" is not a number of per cent"))?;
-    Ok((parse_quantity(&name)?, percent))
+    let quantity = parse_quantity(&name)?;
+    if !Quantity::PLANNED.contains(&quantity) {
+        return Err(format!("no {name} is planned. Planned: {}.", Quantity::PLANNED.map(Quantity::name).join(", ")));
+    }
+    let percent = percent.trim_end_matches('%').trim();
+    Ok((quantity, percent.parse().map_err(|_| format!("\"{percent}\" is not a number of per cent"))?))
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {

@@ -85,7 +85,7 @@ pub struct Finding {
 }
 
 /// `x 12.3, y -4.0, z 6.0 mm`.
-pub(crate) fn shown(spot: &Spot) -> String {
+fn shown(spot: &Spot) -> String {
     let [x, y, z] = spot.at.to_array().map(|v| (v * 10.0).round() / 10.0 + 0.0);
     format!("x {x:.1}, y {y:.1}, z {z:.1} mm")
 }

@@ -4,8 +4,8 @@ use crate::aligned::Aligned;
 use crate::arc::Span;
 use crate::clock::Trust;
 use crate::figures;
-use crate::finding::{Finding, Kind, shown, stretch};
-use crate::planned::{PlannedPass, Spot};
+use crate::finding::{Finding, Kind, stretch};
+use crate::planned::PlannedPass;
 use crate::quantity::Quantity;
 use crate::record::{Log, PassRow};
 use crate::settings::Settings;
@@ -311,9 +311,4 @@ fn of_log(log: &Log, reference: &str, moment: &dyn Fn(f64) -> String) -> Vec<Fin
         say(Kind::Rows, None, format!("{name}: of {} rows, {}.", tally.rows, faults.join(", ")));
     }
     found
-}
-
-/// Where a finding lies, for tables.
-pub fn place(spots: &[Spot; 2]) -> String {
-    format!("{:.1} to {:.1} mm, {}", spots[0].along, spots[1].along, shown(&spots[0]))
 }

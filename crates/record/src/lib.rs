@@ -44,7 +44,6 @@ pub use error::RecordError;
 pub use figures::Measured;
 pub use finding::{Finding, Kind};
 pub use join::join;
-pub use judge::place;
 pub use planned::{Place, PlannedPass, Spot};
 pub use quantity::Quantity;
 pub use record::{Log, PassRow, Record};

@@ -96,17 +96,13 @@ impl PlannedPass {
         }
     }
 
-    /// Mean of a planned quantity over the time of the path.
+    /// Mean of a planned quantity over the time of the path; of the speed, that with which the torch covers the whole path.
     pub fn mean(&self, quantity: Quantity) -> Option<f64> {
-        let pieces = || self.path.windows(2).map(|pair| (pair[1].time - pair[0].time, pair[0]));
+        let pieces = || self.path.windows(2).map(|pair| (pair[1].time - pair[0].time, pair[0].feed));
         let time: f64 = pieces().map(|(time, _)| time).sum();
-        let mean = |value: fn(&Place) -> f64| match time > 0.0 {
-            true => Some(pieces().map(|(time, place)| time * value(&place)).sum::<f64>() / time),
-            false => self.path.first().map(value),
-        };
         match quantity {
-            Quantity::Feed => mean(|place| place.feed),
-            Quantity::Speed => mean(|place| place.speed),
+            Quantity::Speed if time > 0.0 => Some(self.length() / time),
+            Quantity::Feed if time > 0.0 => Some(pieces().map(|(time, feed)| time * feed).sum::<f64>() / time),
             _ => self.value(quantity, self.struck),
         }
     }

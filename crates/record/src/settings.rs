@@ -40,7 +40,7 @@ impl Settings {
         let rest = [
             ("the least stretch", self.least, 0.02, 60.0, "s"),
             ("the time to settle", self.settle, 0.0, 60.0, "s"),
-            ("the efficiency of the arc", self.efficiency, 0.01, 1.0, ""),
+            ("the efficiency of the arc", self.efficiency, 0.01, 1.0, "(fraction of the power)"),
             ("the hottest start", self.hottest.unwrap_or(100.0), 0.0, 3000.0, "°C"),
             ("the shortest stop", self.stop, 0.1, 1e6, "s"),
         ];

@@ -7,8 +7,8 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// When each pass of a plan is welded, s, as its exported table says.
-fn times(at: &Path) -> Vec<[f64; 2]> {
+/// When the arc burns in each pass of a plan, s: while the torch moves, as its exported table says, and so long before and after.
+fn times(at: &Path, [before, after]: [f64; 2]) -> Vec<[f64; 2]> {
     ok(at, &["export", "out/plan.json", "-o", "beads.csv"]);
     let table = fs::read_to_string(at.join("beads.csv")).unwrap();
     let mut lines = table.lines();
@@ -22,7 +22,7 @@ fn times(at: &Path) -> Vec<[f64; 2]> {
         let (begin, end) = (number(start), number(start) + number(time));
         passes.entry((number(layer) as usize, number(pass) as usize)).or_insert([begin, end])[1] = end;
     }
-    passes.into_values().collect()
+    passes.into_values().map(|[begin, end]| [begin - before, end + after]).collect()
 }
 
 /// The power source's log: 20 rows a second, its clock 500 s ahead; in one pass the feed falls to `low` of what was planned.
@@ -55,10 +55,11 @@ fn a_record_is_written_verified_and_opened_elsewhere() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     ok(at, &["example", "cross", "-o", "cross.stl"]);
-    ok(at, &["plan", "cross.stl", "-s", "contour", "--no-deposit", "-o", "out", "--set", "cost.hour=60"]);
+    ok(at, &["plan", "cross.stl", "-s", "contour", "--no-deposit", "-o", "out", "--set", "cost.hour=60", "--set", "process.current=150", "--set", "process.voltage=18.5"]);
     let plan: serde_json::Value = serde_json::from_slice(&fs::read(at.join("out/plan.json")).unwrap()).unwrap();
-    let feed = plan["profile"]["process"]["wire_feed_speed"].as_f64().unwrap();
-    let passes = times(at);
+    let value = |section: &str, key: &str| plan["profile"][section][key].as_f64().unwrap();
+    let feed = value("process", "wire_feed_speed");
+    let passes = times(at, [value("process", "arc_start_delay"), value("start_stop", "crater_fill_time")]);
     fs::write(at.join("power.csv"), power(&passes, feed, 20)).unwrap();
     fs::write(at.join("trace.toml"), "operator = \"A. Weld\"\n[wire]\nbatch = 4711\n").unwrap();
     let arguments =

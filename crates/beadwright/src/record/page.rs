@@ -1,6 +1,6 @@
 //! `record.html`: what is doubtful first, then where it lies, the passes in figures, and how the logs were aligned.
 
-use super::{FileHash, Finding, Log, Part, PassRow, Quantity, Totals, Trust, place};
+use super::{FileHash, Finding, Log, Part, PassRow, Quantity, Totals, Trust};
 use crate::number::{fixed, hours};
 use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::{Row, Sheet};
@@ -68,17 +68,15 @@ fn findings(sheet: &mut Sheet, part: &Part<'_>) {
     let row = |finding: &Finding| {
         let pass = finding.pass.map(|pass| &part.record.passes[pass]);
         let number = |number: fn(&PassRow) -> usize| pass.map(|pass| number(pass).to_string()).unwrap_or_default();
-        let along = finding.place.as_ref().map(place).unwrap_or_default();
         plain([
             finding.kind.name().to_owned(),
             number(|row| row.layer),
             number(|row| row.pass),
-            along,
             finding.sentence.clone(),
         ])
     };
     let rows: Vec<Row> = all.iter().take(MOST).map(row).collect();
-    sheet.table(&["kind", "layer", "pass", "where", "what"], &rows);
+    sheet.table(&["kind", "layer", "pass", "what"], &rows);
     if all.len() > MOST {
         sheet.text(&format!("{} more are in record.json.", all.len() - MOST));
     }

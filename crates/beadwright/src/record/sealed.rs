@@ -91,7 +91,7 @@ pub enum Broken {
     #[error("record.json has another seal than the one that was kept ({0})")]
     OtherSeal(String),
     /// A pass whose hash does not fit.
-    #[error("record.json, line {line}: the row of a pass was changed, or rows before it were removed, added or moved{}", pass.map(|(layer, pass)| format!(" (layer {layer}, pass {pass})")).unwrap_or_default())]
+    #[error("record.json, line {line}: the row of a pass, or what stands before it, was changed, removed or moved{}", pass.map(|(layer, pass)| format!(" (layer {layer}, pass {pass})")).unwrap_or_default())]
     Row {
         /// Line, from 1.
         line: usize,

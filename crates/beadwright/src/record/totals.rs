@@ -26,7 +26,7 @@ impl Totals {
         let mut metrics = Metrics::new(part.profile);
         part.layers.iter().for_each(|layer| metrics.add(layer));
         Self {
-            arc_hours: metrics.arc_time_s / 3600.0,
+            arc_hours: part.planned.iter().map(super::PlannedPass::seconds).sum::<f64>() / 3600.0,
             hours: metrics.total_time_s / 3600.0,
             wire_kg: Some(metrics.wire_mass_kg),
             gas_m3: metrics.gas_m3,
