@@ -201,7 +201,7 @@ impl Adapted<'_> {
         let z = self.plan.layers[self.number - 1].z;
         let page = adapt::page::page(&header.part, self.number, z, self.seen, self.sentences);
         let mut folder = Folder::new(&arguments.output)?;
-        folder.append("adapt.html", &page.html())?;
+        folder.append("adapt.html", page.html())?;
         if self.followed.layers.is_empty() {
             return Ok(folder.commit()?);
         }

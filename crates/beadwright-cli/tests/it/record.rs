@@ -55,7 +55,24 @@ fn a_record_is_written_verified_and_opened_elsewhere() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     ok(at, &["example", "cross", "-o", "cross.stl"]);
-    ok(at, &["plan", "cross.stl", "-s", "contour", "--no-deposit", "-o", "out", "--set", "cost.hour=60", "--set", "process.current=150", "--set", "process.voltage=18.5"]);
+    ok(
+        at,
+        &[
+            "plan",
+            "cross.stl",
+            "-s",
+            "contour",
+            "--no-deposit",
+            "-o",
+            "out",
+            "--set",
+            "cost.hour=60",
+            "--set",
+            "process.current=150",
+            "--set",
+            "process.voltage=18.5",
+        ],
+    );
     let plan: serde_json::Value = serde_json::from_slice(&fs::read(at.join("out/plan.json")).unwrap()).unwrap();
     let value = |section: &str, key: &str| plan["profile"][section][key].as_f64().unwrap();
     let feed = value("process", "wire_feed_speed");

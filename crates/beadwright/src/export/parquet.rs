@@ -57,7 +57,7 @@ pub(crate) fn table(name: &str, rows: usize, fields: &[Field<'_>]) -> Result<Vec
         columns(&mut group, begin..(begin + GROUP).min(rows), fields)?;
         group.close()?;
     }
-    Ok(writer.into_inner()?)
+    writer.into_inner()
 }
 
 fn schema(name: &str, fields: &[Field<'_>]) -> Result<TypePtr, ParquetError> {

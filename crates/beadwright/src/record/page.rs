@@ -12,6 +12,8 @@ use planar::Bounds;
 const MOST: usize = 500;
 /// Points of the paths in a picture.
 const MOST_POINTS: usize = 20_000;
+/// A place as a picture shows it.
+type View = fn(DVec3) -> DVec2;
 /// Colours of a picture: welded, and marked.
 const PLAIN: &str = "#9ca3af";
 const MARKED: &str = "#d55e00";
@@ -95,7 +97,7 @@ fn pictures(sheet: &mut Sheet, part: &Part<'_>) {
     let marked: Vec<Vec<DVec3>> = part.record.findings.iter().filter_map(stretch).collect();
     sheet.heading("Where it lies");
     // An oblique view: x to the right and back, y to the left and back, z upwards.
-    let views: [(&str, fn(DVec3) -> DVec2); 2] =
+    let views: [(&str, View); 2] =
         [("In space", |p| DVec2::new(0.866 * (p.x - p.y), 0.5 * (p.x + p.y) + p.z)), ("From above", |p| p.truncate())];
     let pictures: Vec<(String, String)> = views
         .into_iter()

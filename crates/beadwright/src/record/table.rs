@@ -5,19 +5,22 @@ use crate::export::parquet::{Field, Values, table as parquet};
 use ::parquet::errors::ParquetError;
 use std::ops::Range;
 
+type Count = fn(&PassRow) -> usize;
 type Number = Box<dyn Fn(&PassRow) -> Option<f64>>;
+
+/// The columns of whole numbers.
+const COUNTS: [(&str, Count); 5] = [
+    ("layer", |row| row.layer),
+    ("pass", |row| row.pass),
+    ("arcs", |row| row.arcs),
+    ("tries", |row| row.tries),
+    ("findings", |row| row.findings),
+];
 
 /// The bytes of the file.
 pub(super) fn table(part: &Part<'_>) -> Result<Vec<u8>, ParquetError> {
     let rows = &part.record.passes;
-    let counts: [(&str, fn(&PassRow) -> usize); 5] = [
-        ("layer", |row| row.layer),
-        ("pass", |row| row.pass),
-        ("arcs", |row| row.arcs),
-        ("tries", |row| row.tries),
-        ("findings", |row| row.findings),
-    ];
-    let counts = counts.into_iter().map(|(name, count)| {
+    let counts = COUNTS.into_iter().map(|(name, count)| {
         let values =
             move |range: Range<usize>| Values::Counts(rows[range].iter().map(|row| count(row) as i32).collect());
         Field { name, values: Box::new(values) }
@@ -40,30 +43,25 @@ pub(super) fn table(part: &Part<'_>) -> Result<Vec<u8>, ParquetError> {
 /// The columns of numbers.
 fn numbers() -> Vec<(String, Number)> {
     let mut columns: Vec<(String, Number)> = Vec::new();
-    let mut add = |name: &str, number: Number| columns.push((name.to_owned(), number));
-    add("length (mm)", Box::new(|row| Some(row.length)));
-    add("start (s)", Box::new(|row| row.time.map(|time| time[0])));
-    add("end (s)", Box::new(|row| row.time.map(|time| time[1])));
-    add("burned (s)", Box::new(|row| Some(row.burned)));
-    let pairs: [(&str, &str, fn(&PassRow) -> [Option<f64>; 2]); 4] = [
-        ("time", "s", |row| row.seconds),
-        ("wait", "s", |row| row.wait),
-        ("heat input", "J/mm", |row| row.heat),
-        ("temperature before", "°C", |row| row.before),
-    ];
-    for (name, unit, pair) in pairs {
-        add(&format!("{name} planned ({unit})"), Box::new(move |row| pair(row)[0]));
-        add(&format!("{name} ({unit})"), Box::new(move |row| pair(row)[1]));
+    let mut add = |name: String, number: Number| columns.push((name, number));
+    add("length (mm)".into(), Box::new(|row| Some(row.length)));
+    add("start (s)".into(), Box::new(|row| row.time.map(|time| time[0])));
+    add("end (s)".into(), Box::new(|row| row.time.map(|time| time[1])));
+    add("burned (s)".into(), Box::new(|row| Some(row.burned)));
+    for (which, end) in [(0, " planned"), (1, "")] {
+        add(format!("time{end} (s)"), Box::new(move |row| row.seconds[which]));
+        add(format!("wait{end} (s)"), Box::new(move |row| row.wait[which]));
+        add(format!("heat input{end} (J/mm)"), Box::new(move |row| row.heat[which]));
+        add(format!("temperature before{end} (°C)"), Box::new(move |row| row.before[which]));
     }
-    add("temperature peak (°C)", Box::new(|row| row.peak));
+    add("temperature peak (°C)".into(), Box::new(|row| row.peak));
     for quantity in Quantity::PLANNED {
-        let (word, unit) = (quantity.word(), quantity.unit());
-        add(&format!("{word} planned ({unit})"), Box::new(move |row| row.planned(quantity)));
-        let figures: [(&str, fn(&super::Measured) -> f64); 4] =
-            [("mean", |m| m.mean), ("min", |m| m.min), ("max", |m| m.max), ("deviation", |m| m.deviation)];
-        for (figure, value) in figures {
-            add(&format!("{word} {figure} ({unit})"), Box::new(move |row| row.measured(quantity).map(value)));
-        }
+        let name = |figure: &str| format!("{} {figure} ({})", quantity.word(), quantity.unit());
+        add(name("planned"), Box::new(move |row| row.planned(quantity)));
+        add(name("mean"), Box::new(move |row| row.measured(quantity).map(|measured| measured.mean)));
+        add(name("min"), Box::new(move |row| row.measured(quantity).map(|measured| measured.min)));
+        add(name("max"), Box::new(move |row| row.measured(quantity).map(|measured| measured.max)));
+        add(name("deviation"), Box::new(move |row| row.measured(quantity).map(|measured| measured.deviation)));
     }
     columns
 }

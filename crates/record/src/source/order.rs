@@ -143,8 +143,7 @@ impl Pieces {
     }
 
     fn apply(self, source: &mut Source) {
-        let pick = |rows: &[f64]| self.order.iter().map(|&row| rows[row as usize]).collect();
-        source.times = pick(&source.times);
+        source.times = self.order.iter().map(|&row| source.times[row as usize]).collect();
         for (_, column) in &mut source.columns {
             *column = self.order.iter().map(|&row| column[row as usize]).collect();
         }
