@@ -116,6 +116,10 @@ fn write(arguments: &Arguments) -> anyhow::Result<()> {
     let planned = record::planned(&beads);
     let sources =
         arguments.source.iter().map(|path| log(path, &arguments.column)).collect::<anyhow::Result<Vec<_>>>()?;
+    let unknown = |(quantity, _): &&(Quantity, String)| sources.iter().all(|source| source.column(*quantity).is_none());
+    if let Some((quantity, column)) = arguments.column.iter().find(unknown) {
+        anyhow::bail!("--column {}={column}: no log has such a column.", quantity.name());
+    }
     let settings = arguments.settings(record::settings(&profile));
     let record = record::join(&planned, &sources, &settings).with_context(|| format!("{}", path.display()))?;
     drop(sources);

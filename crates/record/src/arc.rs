@@ -115,7 +115,7 @@ impl Arcs {
         arcs.join();
         arcs.settle();
         if quantity == Quantity::Temperature {
-            // Metal cools slowly: only beginnings can be told.
+            // Metal cools slowly: only beginnings can be seen.
             arcs.spans.iter_mut().for_each(|span| (span.end, span.end_known) = (span.start, false));
         }
         arcs
@@ -129,8 +129,8 @@ impl Arcs {
     fn of_events(source: &Source, on: &What, off: &What) -> Self {
         let mut arcs = Self { signal: Signal::Events, spans: Vec::new(), rows: Vec::new(), only_burning: false };
         let mut since: Option<usize> = None;
-        let told = source.events.iter().filter(|(_, event)| event.what == *on || event.what == *off);
-        for (&row, event) in told {
+        let switches = source.events.iter().filter(|(_, event)| event.what == *on || event.what == *off);
+        for (&row, event) in switches {
             let begins = event.what == *on;
             match since {
                 // A message that was sent twice.

@@ -44,7 +44,7 @@ pub enum Trust {
 /// clock was set.
 const STEADY: (f64, f64) = (1.0, 2e-3);
 
-/// A drift can be told from this time on, s.
+/// Shortest time from which a drift can be computed, s.
 const LONG: f64 = 300.0;
 
 /// Ends whose offset differs by more than this, s, from the median of so many on each side are left out of the fit.

@@ -24,7 +24,7 @@ pub struct PlannedPass {
     pub layer: usize,
     /// Pass in its layer, from 1.
     pub pass: usize,
-    /// When the arc is struck, s from the start of the build; the torch may still stand.
+    /// When the arc is struck, s from the start of the build; the torch may still wait.
     pub struck: f64,
     /// When it goes out, s.
     pub out: f64,
@@ -61,7 +61,7 @@ impl PlannedPass {
         self.out - self.struck
     }
 
-    /// Where the torch is at a planned time, s; before and after the path it stands at its ends.
+    /// Where the torch is at a planned time, s; before and after the path it is at its ends.
     pub fn spot(&self, time: f64) -> Spot {
         let mut along = 0.0;
         for pair in self.path.windows(2) {

@@ -54,7 +54,7 @@ impl Welding {
         let labels = if commanded { labels(leader.source, leader, planned) } else { None };
         let of_pass = match &labels {
             Some(labels) => labelled(labels),
-            None => told_apart(planned, &spans),
+            None => by_times(planned, &spans),
         };
         let of_pass = of_pass
             .into_iter()
@@ -178,7 +178,7 @@ fn as_planned(pass: &PlannedPass, seconds: f64) -> bool {
 }
 
 /// The planned pass of each arc by lengths and times alone.
-fn told_apart(planned: &[PlannedPass], spans: &[Span]) -> Vec<(usize, Range<usize>)> {
+fn by_times(planned: &[PlannedPass], spans: &[Span]) -> Vec<(usize, Range<usize>)> {
     let expected: Vec<Span> = planned.iter().map(|pass| Span::new(pass.struck, pass.out)).collect();
     let rules = Rules { length: (0.4, 0.04), offset: (1.0, 0.1), missing: 0.3, extra: 0.6, about: None };
     sequence::pairs(&expected, spans, &rules).into_iter().map(|pair| (pair.expected, pair.seen)).collect()
@@ -218,7 +218,7 @@ fn knots(pass: &PlannedPass, seen: &[Span], near: Option<f64>) -> Vec<[f64; 2]> 
     if as_planned(pass, to - from) {
         return vec![[from, begin], [to, end]];
     }
-    // The torch stood while the arc was out.
+    // The torch waited while the arc was out.
     let burned: f64 = seen.iter().map(Span::seconds).sum();
     if seen.len() > 1 && as_planned(pass, burned) {
         let mut at = begin;

@@ -172,6 +172,7 @@ fn what_cannot_be_joined_is_refused_with_its_place() {
             .contains("log.csv: line 1: no column is named time. The header names when, current.")
     );
     assert!(fails("time,current\n1,2\n2,3\n", &[]).contains("no log says when the arc burned"));
+    assert!(fails("time,current\n1,2\n", &["--column", "voltage=U"]).contains("no log has such a column"));
     assert!(fails("time,current\n1,2\n", &["--least", "0"]).contains("the least stretch = 0 s"));
     refused(at, &["record", "out/plan.json"], 2);
     refused(at, &["record", "out/plan.json", "--source", "log.csv", "--window", "colour=3"], 2);

@@ -91,7 +91,7 @@ pub enum Broken {
     #[error("record.json has another seal than the one that was kept ({0})")]
     OtherSeal(String),
     /// A pass whose hash does not fit.
-    #[error("record.json, line {line}: the row of a pass, or what stands before it, was changed, removed or moved{}", pass.map(|(layer, pass)| format!(" (layer {layer}, pass {pass})")).unwrap_or_default())]
+    #[error("record.json, line {line}: the row of a pass, or what comes before it, was changed, removed or moved{}", pass.map(|(layer, pass)| format!(" (layer {layer}, pass {pass})")).unwrap_or_default())]
     Row {
         /// Line, from 1.
         line: usize,
@@ -138,7 +138,7 @@ pub fn verify(text: &str, seal: Option<&str>, file: &mut dyn FnMut(&str) -> Opti
     broken
 }
 
-/// The rows that do not fit the hash that stands before them.
+/// The rows that do not fit the hash before them.
 fn changed_rows(head: &str, rows: &str) -> Vec<Broken> {
     let mut before = sha256(head.as_bytes());
     let mut broken = Vec::new();

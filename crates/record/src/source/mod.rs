@@ -174,7 +174,9 @@ impl Header {
         let mut quantities: Vec<(Quantity, usize, (f64, f64))> = Vec::new();
         for (at, (name, unit)) in columns.iter().enumerate() {
             let other = called.iter().find(|(_, other)| cells[at] == *other || *other == *name).map(|(own, _)| *own);
-            let Some(quantity) = other.or_else(|| Quantity::named(name)) else { continue };
+            // A column that was named takes the place of one with the usual name.
+            let usual = || Quantity::named(name).filter(|usual| called.iter().all(|(own, _)| own != usual));
+            let Some(quantity) = other.or_else(usual) else { continue };
             let Some(scale) = quantity.from_unit(unit) else {
                 return Err(format!("column \"{}\": {} in {unit} is not understood.", cells[at], quantity.word()));
             };

@@ -126,7 +126,7 @@ impl Pieces {
         let mut rows = self.order.split_off(segment);
         rows.sort_by(|a, b| source.times[*a as usize].total_cmp(&source.times[*b as usize]));
         let before = rows.len();
-        // Rows of one time stand together, in the order of the file.
+        // Rows of one time follow one another, in the order of the file.
         let mut kept: Vec<u32> = Vec::with_capacity(rows.len());
         for row in rows {
             let twin = |own: &u32| same(source, *own as usize, row as usize);

@@ -26,7 +26,7 @@ fn the_same_log_in_other_spellings_is_the_same() {
     let steps: Vec<f64> = dated.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert!(dated.dated && (steps[0] - 0.5).abs() < 1e-6 && (steps[1] - 1.0).abs() < 1e-6, "{steps:?}");
     let called = [(Quantity::Current, "Ist".to_owned())];
-    let named = Source::read("a", "time,Ist\n0,5\n1,6\n".as_bytes(), &called).unwrap();
+    let named = Source::read("a", "time,current,Ist\n0,1,5\n1,1,6\n".as_bytes(), &called).unwrap();
     assert_eq!(named.column(Quantity::Current), Some(&[5.0, 6.0][..]));
 }
 
