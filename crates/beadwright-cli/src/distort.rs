@@ -88,6 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "--units, --scale, --turn, --shift and the like place the part that --compensate names; name it"
     );
     let profile = source.profile(&arguments.wanted)?;
+    let part = source.plan().map_or_else(String::new, |plan| plan.header.part.clone());
     let (task, bar) = progress::task()?;
     let loaded = source.load(&program::Reading::default(), &arguments.wanted, &profile, None, &task)?;
     let (beads, bent) = arguments.build(&loaded.layers, &profile, &task)?;
@@ -98,7 +99,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     bar.finish_and_clear();
     if let Some(page) = &arguments.page {
-        file::write(page, distortion::page::page(&loaded.name, &bent, &course).html().as_bytes())?;
+        file::write(page, distortion::page::page(&part, &bent, &course).html().as_bytes())?;
     }
     let mut out = std::io::stdout().lock();
     if arguments.json {

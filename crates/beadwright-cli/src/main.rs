@@ -31,6 +31,7 @@ mod profile;
 mod program;
 mod progress;
 mod reach;
+mod record;
 mod remedy;
 mod repair;
 mod reproduce;
@@ -106,6 +107,9 @@ enum Command {
     Heat(heat::Arguments),
     /// Compute how plate and part bend as the beads shrink, on the clamps and released.
     Distort(distort::Arguments),
+    /// Join a plan with the logs of its build: what was welded pass by pass, what is doubtful and where, with hashes that show later
+    /// changes.
+    Record(record::Arguments),
     /// Reproduce the papers' experiments: our results next to theirs.
     Reproduce(reproduce::Arguments),
     /// Write a plan for other programs: tables, lines for ParaView, toolpaths in 3MF, the shape as built, drawings of layers.
@@ -149,6 +153,7 @@ fn main() -> ExitCode {
         Command::Reach(arguments) => reach::run(&arguments),
         Command::Heat(arguments) => heat::run(&arguments),
         Command::Distort(arguments) => distort::run(&arguments),
+        Command::Record(arguments) => record::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

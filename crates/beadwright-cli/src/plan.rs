@@ -470,7 +470,7 @@ impl Sink for Files<'_> {
         if self.pictures.contains(&(layer.index + 1)) {
             let title = format!("Layer {}, z {:.2} mm", layer.index + 1, layer.z);
             let drawn = plan::drawn(&layer, self.profile);
-            self.folder.append(&format!("layer-{:03}.svg", layer.index + 1), &report::svg::layer(&drawn, &title))?;
+            self.folder.append(&format!("layer-{:03}.svg", layer.index + 1), report::svg::layer(&drawn, &title))?;
         }
         let Selection { from: index, pass, .. } = self.selection;
         anyhow::ensure!(

@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for paper in papers {
         let done = (paper.run)(&task)?;
         let file = format!("reproduce-{}.html", paper.name);
-        output.append(&file, &done.page.html())?;
+        output.append(&file, done.page.html())?;
         done.files.iter().try_for_each(|(name, text)| output.append(name, text))?;
         said.push(format!("{}: {}", paper.name, paper.about));
         said.extend(done.lines.iter().map(|line| format!("  {line}")));

@@ -31,6 +31,7 @@ pub mod files;
 pub mod plan;
 pub mod profile;
 pub mod read_back;
+pub mod record;
 pub mod report;
 pub mod trial;
 

@@ -19,6 +19,7 @@ mod height;
 mod opened_elsewhere;
 mod own_dialect;
 mod preform;
+mod record;
 mod serve;
 mod streams;
 mod together;

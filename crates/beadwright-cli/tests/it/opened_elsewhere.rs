@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 /// Python with the packages in the folder that BEADWRIGHT_PYTHON_PACKAGES names, besides its own.
-fn python(folder: &Path, arguments: &[&str]) -> std::io::Result<Output> {
+pub(crate) fn python(folder: &Path, arguments: &[&str]) -> std::io::Result<Output> {
     let mut python = Command::new("python3");
     if let Some(packages) = std::env::var_os("BEADWRIGHT_PYTHON_PACKAGES") {
         python.env("PYTHONPATH", packages);

@@ -15,7 +15,7 @@ mod csv;
 mod dxf;
 mod glb;
 #[cfg(feature = "parquet")]
-mod parquet;
+pub(crate) mod parquet;
 #[cfg(feature = "png")]
 mod png;
 pub mod solids;

@@ -64,12 +64,12 @@ impl Folder {
         Ok(Self { stage: stage.map_err(error)?, named, folder, names: BTreeSet::new(), open: None })
     }
 
-    /// Appends text to a file of this run.
+    /// Appends text or bytes to a file of this run.
     ///
     /// # Errors
     /// [`FolderError`].
-    pub fn append(&mut self, name: &str, text: &str) -> Result<(), FolderError> {
-        self.write(name, text).map_err(named(&self.named.join(name)))
+    pub fn append(&mut self, name: &str, content: impl AsRef<[u8]>) -> Result<(), FolderError> {
+        self.write(name, content.as_ref()).map_err(named(&self.named.join(name)))
     }
 
     /// Appends texts, each to its file.
@@ -80,7 +80,7 @@ impl Folder {
         chunks.into_iter().try_for_each(|chunk| self.append(&chunk.file, &chunk.text))
     }
 
-    fn write(&mut self, name: &str, text: &str) -> io::Result<()> {
+    fn write(&mut self, name: &str, content: &[u8]) -> io::Result<()> {
         if self.open.as_ref().is_none_or(|(open, _)| open != name) {
             self.close()?;
             let file = File::options().create(true).append(true).open(self.stage.new_files().join(name))?;
@@ -88,7 +88,7 @@ impl Folder {
             self.open = Some((name.to_owned(), BufWriter::with_capacity(1 << 16, file)));
         }
         match &mut self.open {
-            Some((_, writer)) => writer.write_all(text.as_bytes()),
+            Some((_, writer)) => writer.write_all(content),
             None => Ok(()),
         }
     }

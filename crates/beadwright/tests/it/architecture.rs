@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Modules of the crates below the command, from the top of the table to its bottom; those in one row do not know each other.
-/// Between crates Cargo keeps the arrows: `planar`, `part`, `plan`, `program`, `robot`, `distort`, `beadwright`, `papers`.
+/// Between crates Cargo keeps the arrows: `planar`, `part`, `plan`, `program`, `robot`, `distort`, `record`, `beadwright`, `papers`.
 const CRATES: &[(&str, &[&[&str]])] = &[
     (
         "part",
@@ -70,6 +70,22 @@ const CRATES: &[(&str, &[&[&str]])] = &[
         ],
     ),
     (
+        "record",
+        &[
+            &["chain", "error", "quantity", "time"],
+            &["planned", "settings", "source"],
+            &["arc"],
+            &["sequence"],
+            &["clock"],
+            &["aligned"],
+            &["welded"],
+            &["figures", "finding"],
+            &["record"],
+            &["judge"],
+            &["join"],
+        ],
+    ),
+    (
         "beadwright",
         &[
             // Holds the settings of all stages of the crates below, which can be used without it.
@@ -80,7 +96,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["report"],
             &["as_built", "distortion", "export", "files", "simulate"],
             &["adapt"],
-            &["build", "trial"],
+            &["build", "record", "trial"],
             &["compare"],
             &["read_back"],
         ],

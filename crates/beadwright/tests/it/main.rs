@@ -76,6 +76,7 @@ mod rapid;
 mod readback;
 mod readback_robots;
 mod readers;
+mod record;
 mod repair;
 mod report;
 mod report_browser;

@@ -1,5 +1,6 @@
 //! Text files as they occur in practice: with a byte order mark, in UTF-16, with the line ends of any system.
 
+pub mod table;
 pub mod toml;
 
 use std::borrow::Cow;

@@ -1,7 +1,8 @@
 //! The sheet that is filled in at the bench, as CSV that `bead fit` and `bead walls` read as it is.
 
 use super::{BeadSize, Factor, Placed, Shape};
-use crate::bead::library::{LibraryError, fields, separator};
+use crate::bead::library::{LibraryError, fields};
+use bead_part::text::table::separator;
 
 /// The sheet: a line for each trial in the order of welding, with empty cells for what is measured.
 pub fn csv(title: &str, shape: Shape, factors: &[Factor], trials: &[Placed], length: f64) -> String {

@@ -5,28 +5,7 @@
 //! semicolons or tabs, whichever the header uses; with the latter two a decimal comma is understood.
 
 use super::{Input, LibraryError};
-
-/// Endings of column names, and the units they mean; longer ones first.
-const UNITS: [(&str, &str); 18] = [
-    ("_mm_min", "mm/min"),
-    ("_cm_min", "cm/min"),
-    ("_m_min", "m/min"),
-    ("_l_min", "l/min"),
-    ("_mm_s", "mm/s"),
-    ("_j_mm", "J/mm"),
-    ("_percent", "%"),
-    ("_deg", "°"),
-    ("_mm", "mm"),
-    ("_cm", "cm"),
-    ("_kw", "kW"),
-    ("_hz", "Hz"),
-    ("_ms", "ms"),
-    ("_a", "A"),
-    ("_v", "V"),
-    ("_w", "W"),
-    ("_c", "°C"),
-    ("_s", "s"),
-];
+use bead_part::text::table::{name_and_unit, separator};
 
 /// Which columns are which. `Default` takes `width` and `height` as the bead and all others as inputs.
 #[derive(Debug, Clone, Default)]
@@ -172,11 +151,6 @@ fn split(text: &str) -> Result<(char, Vec<Record>), LibraryError> {
     Ok((separator, records.collect::<Result<_, LibraryError>>()?))
 }
 
-/// What separates the fields of a table with this header.
-pub(crate) fn separator(header: &str) -> char {
-    ['\t', ';'].into_iter().find(|s| header.contains(*s)).unwrap_or(',')
-}
-
 /// The fields of a line, `number` of the file. A quoted field may hold separators; two quotes inside it stand for one.
 pub(crate) fn fields(line: &str, separator: char, number: usize) -> Result<Vec<String>, LibraryError> {
     let (mut fields, mut field, mut quoted) = (Vec::new(), String::new(), false);
@@ -217,18 +191,6 @@ fn header(head: &Record) -> Result<Vec<Column>, LibraryError> {
         columns.push(Column { header: field.clone(), name, unit });
     }
     Ok(columns)
-}
-
-/// `current_a` and `current (A)` both are `current` in A.
-fn name_and_unit(field: &str) -> (String, String) {
-    let field = field.trim();
-    if let Some((name, rest)) = field.split_once(['(', '[']) {
-        let name = name.trim().to_lowercase().replace([' ', '-'], "_");
-        return (name, rest.trim_end_matches([')', ']']).trim().to_owned());
-    }
-    let lower = field.to_lowercase().replace([' ', '-'], "_");
-    let found = UNITS.iter().find_map(|(end, unit)| lower.strip_suffix(end).map(|name| (name.to_owned(), *unit)));
-    found.filter(|(name, _)| !name.is_empty()).map_or((lower.clone(), String::new()), |(n, u)| (n, u.to_owned()))
 }
 
 /// The column with a name, given with or without its unit.

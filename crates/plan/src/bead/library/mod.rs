@@ -27,8 +27,8 @@ mod student;
 pub use demonstration::demonstration_csv;
 pub use error::LibraryError;
 pub(crate) use least_squares::Factored;
+pub(crate) use measured::fields;
 pub use measured::{Columns, Measured};
-pub(crate) use measured::{fields, separator};
 pub use printed::{PrintedRow, median, printed_rows};
 pub use solve::{Layering, Limit, PREFERRED_RATIOS, Recipe, Wish};
 

@@ -1,0 +1,53 @@
+//! A plan as the record sees it.
+
+use super::{Place, PlannedPass, Settings};
+use crate::export::{Beads, Piece};
+use crate::pass::PassKind;
+use crate::profile::Profile;
+
+/// The passes of a plan with the times at which they are welded. The turns of a helix are one pass, that of its first layer.
+pub fn planned(beads: &Beads<'_>) -> Vec<PlannedPass> {
+    let mut passes: Vec<PlannedPass> = Vec::new();
+    for pieces in beads.pieces().chunk_by(|a, b| (a.layer, a.pass) == (b.layer, b.pass)) {
+        let pass = pass(pieces, beads.profile);
+        let goes_on = beads.layers.iter().any(|layer| layer.index + 1 == pass.layer && layer.lit.before);
+        match passes.last_mut().filter(|_| goes_on) {
+            Some(helix) => {
+                helix.path.extend(pass.path);
+                helix.out = pass.out;
+            }
+            None => passes.push(pass),
+        }
+    }
+    passes
+}
+
+fn pass(pieces: &[Piece], profile: &Profile) -> PlannedPass {
+    let (first, last) = (&pieces[0], &pieces[pieces.len() - 1]);
+    let process = profile.process.at_layer(first.layer - 1);
+    let place =
+        |piece: &Piece, at, time| Place { at, time, feed: piece.feed * process.wire_feed_speed, speed: piece.speed };
+    let end = last.start + last.seconds;
+    let path = pieces.iter().map(|piece| place(piece, piece.from, piece.start)).chain([place(last, last.to, end)]);
+    let crater = if first.kind == PassKind::Spot { 0.0 } else { profile.start_stop.crater_fill_time };
+    PlannedPass {
+        layer: first.layer,
+        pass: first.pass,
+        struck: first.start - process.arc_start_delay,
+        out: end + crater,
+        path: path.collect(),
+        current: process.current,
+        voltage: process.voltage,
+        temperature: (!first.temperature.is_nan()).then_some(first.temperature),
+    }
+}
+
+/// The limits of a record as a profile suggests them: the efficiency of its arc, and its limit between passes.
+pub fn settings(profile: &Profile) -> Settings {
+    let usual = Settings::default();
+    Settings {
+        efficiency: profile.heat.as_ref().map_or(usual.efficiency, |heat| heat.arc_efficiency),
+        hottest: profile.interpass.as_ref().map(|limits| limits.max_temperature),
+        ..usual
+    }
+}

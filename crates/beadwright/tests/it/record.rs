@@ -1,0 +1,223 @@
+//! The record of an example part whose build is disturbed: every disturbance is found at its pass and place, and a record that was
+//! changed later shows it.
+
+#[path = "../../../record/tests/it/cell.rs"]
+mod cell;
+
+use beadwright::export::Beads;
+use beadwright::record::{
+    self, Broken, FileHash, Finding, Kind, Part, PlannedPass, Quantity, Record, Settings, join, planned, verify,
+};
+use beadwright::{Plan, Profile, StrategyName, Task, example, plan};
+use cell::{Cell, Clock, Dice, Fault, log};
+
+/// The cross in several passes a layer.
+fn cross() -> (Plan, Profile) {
+    let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+    profile.fill.strategy = StrategyName::Contour;
+    (profile.process.current, profile.process.voltage) = (Some(180.0), Some(20.0));
+    let mesh = example::find("cross").unwrap().mesh();
+    (plan("cross", &mesh, &profile, &Task::new()).unwrap(), profile)
+}
+
+fn passes((plan, profile): &(Plan, Profile)) -> Vec<PlannedPass> {
+    planned(&Beads { header: &plan.header, layers: &plan.layers, profile, heat: None })
+}
+
+#[test]
+fn planned_times_are_those_of_the_plan() {
+    let cross = cross();
+    let (plan, profile) = &cross;
+    let passes = passes(&cross);
+    assert_eq!(passes.len(), plan.summary.metrics.arc_starts);
+    let length: f64 = passes.iter().map(PlannedPass::length).sum();
+    assert!((length - plan.summary.metrics.deposited_length_mm).abs() < 1e-6 * length);
+    let delays = profile.process.arc_start_delay * passes.len() as f64;
+    let seconds: f64 = passes.iter().map(PlannedPass::seconds).sum();
+    assert!((seconds - delays - plan.summary.metrics.arc_time_s).abs() < 1e-6 * seconds);
+}
+
+/// What is done to a build and its logs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Disturbed {
+    Feed,
+    ArcLost,
+    Drift,
+    ClockSet,
+    Doubled,
+    Interrupted,
+}
+
+const ALL: [Disturbed; 6] = [
+    Disturbed::Feed,
+    Disturbed::ArcLost,
+    Disturbed::Drift,
+    Disturbed::ClockSet,
+    Disturbed::Doubled,
+    Disturbed::Interrupted,
+];
+
+/// A disturbed build: its record, the pass, and the places along it between which it was disturbed, mm.
+struct Run {
+    record: Record,
+    pass: usize,
+    along: [f64; 2],
+    clock: Clock,
+}
+
+fn run(plan: &[PlannedPass], what: Disturbed, seed: u64) -> Run {
+    let (mut cell, mut dice) = (Cell::new(plan, seed), Dice(seed + 1000));
+    // Passes long enough for a place in the middle, not at the very ends of the build.
+    let long: Vec<usize> = (3..plan.len() - 3).filter(|&k| plan[k].seconds() > 12.0).collect();
+    let pass = long[dice.below(long.len())];
+    let from = dice.between(0.2, 0.5);
+    let part = [from, from + dice.between(2.5, 4.0) / plan[pass].seconds()];
+    let fault = match what {
+        Disturbed::ArcLost | Disturbed::Doubled => Some(Fault::Out),
+        Disturbed::Interrupted => None,
+        _ => Some(Fault::Feed(dice.between(0.5, 0.8))),
+    };
+    cell.faults.extend(fault.map(|fault| (pass, part, fault)));
+    let done = cell.find(pass);
+    let times = part.map(|part| done.start + part * (done.end - done.start));
+    let mut clock = Clock::new(dice.between(-4000.0, 4000.0), dice.between(-5e-5, 5e-5));
+    match what {
+        Disturbed::Drift => clock.fast = dice.between(3e-4, 9e-4),
+        // Somewhere before the fault, forward or back.
+        Disturbed::ClockSet => {
+            let step = dice.between(20.0, 4000.0) * if seed.is_multiple_of(2) { 1.0 } else { -1.0 };
+            clock.set = Some((done.start * dice.between(0.3, 0.9), step));
+        }
+        _ => {}
+    }
+    let without = if what == Disturbed::Interrupted { vec![times] } else { Vec::new() };
+    let mut power = cell.power_log(&clock, 50.0, &without);
+    if what == Disturbed::Doubled {
+        let lines: Vec<&str> = power.lines().collect();
+        let at = 1 + dice.below(lines.len() - 900);
+        let again = [&lines[..at + 800], &lines[at..]].concat();
+        power = again.join("\n");
+    }
+    let logs = [
+        log("power.csv", &power),
+        log("controller.csv", &cell.controller_log(&Clock::new(50.0, 0.0), seed.is_multiple_of(3))),
+    ];
+    let record = join(plan, &logs, &Settings::default()).unwrap();
+    let along = part.map(|part| plan[pass].spot(plan[pass].struck + part * plan[pass].seconds()).along);
+    Run { record, pass, along, clock }
+}
+
+impl Run {
+    fn kinds(&self) -> Vec<Kind> {
+        let mut kinds: Vec<Kind> = self.record.findings.iter().map(|finding| finding.kind).collect();
+        kinds.dedup();
+        kinds
+    }
+
+    fn find(&self, kind: Kind) -> &Finding {
+        let found: Vec<&Finding> = self.record.findings.iter().filter(|finding| finding.kind == kind).collect();
+        assert_eq!(found.len(), 1, "{kind:?}: {:?}", self.record.findings);
+        found[0]
+    }
+
+    /// The finding lies at the pass, and begins and ends within `near` mm of the disturbance.
+    fn lies(&self, kind: Kind, near: f64) {
+        let finding = self.find(kind);
+        let found = finding.place.unwrap().map(|spot| spot.along);
+        let off = [0, 1].map(|end| (found[end] - self.along[end]).abs());
+        assert!(finding.pass == Some(self.pass) && off.iter().all(|off| *off < near), "{off:?}: {finding:?}");
+    }
+}
+
+#[test]
+fn sixty_disturbances_are_found_at_their_pass_and_place() {
+    let plan = passes(&cross());
+    let current = Kind::OutOfWindow(Quantity::Current);
+    let feed = Kind::OutOfWindow(Quantity::Feed);
+    for seed in 0..60 {
+        let what = ALL[seed as usize % ALL.len()];
+        eprintln!("seed {seed}: {what:?}");
+        let run = run(&plan, what, seed);
+        let expected: &[Kind] = match what {
+            Disturbed::Feed => &[feed, current],
+            Disturbed::ArcLost => &[Kind::ArcLost, Kind::StruckAgain],
+            Disturbed::Drift => &[feed, current, Kind::ClockDrift],
+            Disturbed::ClockSet => &[feed, current, Kind::ClockSet],
+            Disturbed::Doubled => &[Kind::ArcLost, Kind::StruckAgain, Kind::Rows],
+            Disturbed::Interrupted => &[Kind::NotLogged, Kind::Gap],
+        };
+        assert_eq!(run.kinds(), expected, "{:?}", run.record.findings);
+        match what {
+            Disturbed::ArcLost | Disturbed::Doubled => run.lies(Kind::ArcLost, 3.0),
+            Disturbed::Interrupted => run.lies(Kind::NotLogged, 3.0),
+            _ => run.lies(feed, 4.0),
+        }
+        let known = &run.record.logs[0];
+        if what == Disturbed::Drift {
+            assert!((known.drift + 1e6 * run.clock.fast).abs() < 30.0, "{known:?}");
+        }
+        if let Some((_, step)) = run.clock.set {
+            assert!((known.set[0][1] - step).abs() < 0.3, "{known:?} {step}");
+        }
+        if what == Disturbed::Doubled {
+            assert_eq!((known.tally.doubled, known.tally.set_back), (800, 0));
+        }
+    }
+}
+
+#[test]
+fn a_change_of_any_byte_is_found() {
+    let cross = cross();
+    let passes = passes(&cross);
+    let (plan, profile) = &cross;
+    let build = run(&passes, Disturbed::Feed, 6);
+    let settings = Settings::default();
+    let trace = [("wire_batch".to_owned(), "4711 <A>".to_owned())];
+    let inputs = [FileHash::of("power.csv", b"rows")];
+    let part = Part {
+        header: &plan.header,
+        layers: &plan.layers,
+        profile,
+        planned: &passes,
+        record: &build.record,
+        settings: &settings,
+        trace: &trace,
+        inputs: &inputs,
+    };
+    let sealed = part.files().unwrap();
+    assert_eq!(sealed, part.files().unwrap(), "the same input gives the same bytes");
+    let found = |name: &str| sealed.files.iter().find(|(own, _)| own == name).map(|(_, bytes)| bytes.clone());
+    let bytes = |name: &str| found(name).unwrap();
+    let text = String::from_utf8(bytes(record::JSON)).unwrap();
+    let whole: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(whole["passes"].as_array().unwrap().len(), passes.len());
+    assert_eq!(whole["trace"][0]["value"], "4711 <A>");
+    let page = String::from_utf8(bytes(record::HTML)).unwrap();
+    assert!(page.contains("4711 &lt;A&gt;") && page.contains("What is doubtful") && page.contains("wire feed reached"));
+    let check = |text: &str, seal: Option<&str>| verify(text, seal, &mut |name| found(name));
+    assert_eq!(check(&text, Some(&sealed.seal)), []);
+    // Any byte, here a spread of some hundred.
+    for at in (0..text.len()).step_by(text.len() / 400).chain(text.len() - 70..text.len()) {
+        let mut changed = text.clone().into_bytes();
+        changed[at] = if changed[at] == b'7' { b'8' } else { b'7' };
+        assert_ne!(check(&String::from_utf8(changed).unwrap(), None), [], "byte {at}");
+    }
+    // A value of a row names its pass, and no other.
+    let line = text.lines().position(|line| line.contains("\"layer\":4,\"pass\":1,")).unwrap();
+    let rows: Vec<String> = text
+        .lines()
+        .enumerate()
+        .map(|(k, row)| if k == line { row.replacen("\"burned\":", "\"burned\":1", 1) } else { row.to_owned() })
+        .collect();
+    let broken = check(&(rows.join("\n") + "\n"), None);
+    assert_eq!(broken, [Broken::Seal, Broken::Row { line: line + 1, pass: Some((4, 1)) }]);
+    // Other files, and a record that was sealed anew.
+    let missing = verify(&text, None, &mut |name| (name != record::HTML).then(|| bytes(name)));
+    assert_eq!(missing, [Broken::Missing(record::HTML.to_owned())]);
+    let other = verify(&text, None, &mut |name| Some(if name == record::HTML { b"x".to_vec() } else { bytes(name) }));
+    assert_eq!(other, [Broken::Changed(record::HTML.to_owned())]);
+    assert_eq!(check(&text, Some("00")), [Broken::OtherSeal("00".to_owned())]);
+    assert_eq!(check("{}", None), [Broken::Form]);
+    let own = record::other_inputs(&text, &mut |_| Some(FileHash::of("power.csv", b"row2")));
+    assert_eq!(own, [Broken::Changed("power.csv".to_owned())]);
+}
