@@ -9,7 +9,7 @@ Shapes are plans with their passes in another order, built by `beadwright distor
 The figure "folds" knows nothing of temperatures: every piece of a bead folds the plate across itself, by its height above the middle of
 what is there over the second moment of what is there; the folds add up to a lift.
 
-Usage: benches/orders.py shapes|parts [--turn 0,30] [--layers 8] [--voxel 3] [--threads 2] [--binary FILE] [--output FILE.json]
+Usage: benches/orders.py shapes|parts [--shapes wall,A,walls] [--turn 0,30] [--layers 8] [--voxel 3] [--threads 2] [--binary FILE] [--output FILE.json]
 Needs numpy.
 """
 import argparse, concurrent.futures, itertools, json, math, pathlib, subprocess, tempfile
@@ -21,6 +21,7 @@ WIDTH, HEIGHT, THICKNESS, MARGIN = 4.5, 1.8843, 12.0, 25.0
 SHAPES = {
     "wall": [((-100, 0), (-50, 0)), ((-50, 0), (0, 0)), ((0, 0), (50, 0)), ((50, 0), (100, 0))],
     "A": [((-60, -60), (-20, 60)), ((-20, 60), (20, 60)), ((20, 60), (60, -60)), ((-40, 0), (40, 0))],
+    "walls": [((-60, y), (60, y)) for y in (-45, -15, 15, 45)],
 }
 # Ten parts of several islands or long walls: boxes (x, y, length, width, height), mm.
 PARTS = {
@@ -125,7 +126,7 @@ def distorted(binary, path, voxel):
 
 def shapes(arguments, folder):
     profile = base_profile(arguments.binary, folder)
-    cases = [(s, t, b) for s in SHAPES for t in arguments.turn for b in (False, True)]
+    cases = [(s, t, b) for s in arguments.shapes for t in arguments.turn for b in (False, True)]
     found = []
     for shape, turn, block in cases:
         sections = [tuple(turned(p, turn) for p in section) for section in SHAPES[shape]]
@@ -200,6 +201,7 @@ def parts(arguments, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("study", choices=["shapes", "parts"])
+    parser.add_argument("--shapes", type=lambda text: text.split(","), default=["wall", "A"])
     parser.add_argument("--turn", type=lambda text: [float(t) for t in text.split(",")], default=[0.0, 30.0])
     parser.add_argument("--layers", type=int, default=8)
     parser.add_argument("--voxel", type=float, default=3.0)

@@ -107,7 +107,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     print(&mut out, &loaded.name, &bent, beads)?;
     print_eccentricity(&mut out, &EccentricityScore::of(&course))?;
-    Ok(print_rounds(&mut out, &rounds)?)
+    print_rounds(&mut out, &rounds)?;
+    if let Some(part) = &arguments.compensate {
+        writeln!(crate::say::done(false), "\nbent part in {}", arguments.bent(part).display())?;
+    }
+    Ok(())
 }
 
 /// What came of a part bent beforehand.
@@ -140,6 +144,12 @@ impl Arguments {
         Ok((welding.beads.len(), setup.build(&welding, profile, task)?))
     }
 
+    /// The file of the bent part.
+    fn bent(&self, model: &Path) -> PathBuf {
+        let name = || model::Model::placed_so(model, &self.placing).part();
+        self.output.clone().unwrap_or_else(|| format!("{}_bent.stl", name()).into())
+    }
+
     /// Bends a part against what a plan of it does, plans it anew, bends it against what that does, and so on; writes the one of which
     /// least is left.
     fn compensated(
@@ -168,7 +178,7 @@ impl Arguments {
                 compensation: compensation.clone(),
             });
         }
-        let path = self.output.clone().unwrap_or_else(|| format!("{}_bent.stl", part.part()).into());
+        let path = self.bent(model);
         if let Some(best) = rounds[1..].iter().min_by(|a, b| a.left.rms.total_cmp(&b.left.rms)) {
             file::write(&path, &written(&path, &part.part(), &best.compensation.mesh())?)?;
         }
@@ -191,7 +201,11 @@ fn json(bent: &Distortion, course: &[Eccentricity], rounds: &[Round]) -> serde_j
         let nodes: Vec<_> = nodes.map(|(&node, moved)| [bent.grid.place(node).to_array(), moved.to_array()]).collect();
         serde_json::json!({ "lift": shape.lift, "deviation": shape.deviation, "nodes": nodes })
     };
-    let round = |Round { compensation: c, left }: &Round| serde_json::json!({ "bent": c.largest, "at": c.at, "steepest": c.steepest, "raised": c.raised, "left": left });
+    let round = |round: &Round| {
+        let c = &round.compensation;
+        let (bent, at, steepest, raised) = (c.largest, c.at, c.steepest, c.raised);
+        serde_json::json!({ "bent": bent, "at": at, "steepest": steepest, "raised": raised, "left": round.left })
+    };
     let mut value = serde_json::json!({
         "voxels": bent.voxels.len(),
         "steps": bent.steps,

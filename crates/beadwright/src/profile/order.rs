@@ -19,7 +19,7 @@ pub struct OrderSection {
     /// are reversed; open ones begin at their left end (least x, then least y) on one layer and at their right end on
     /// the next; default false.
     pub alternate: bool,
-    /// Whether islands and passes of a layer are laid so that heat stays around the middle of the plate, which then bends less to one
+    /// Whether islands and passes of a layer are laid so that heat stays around the middle of the plate, against bending to one
     /// side: their order, directions and starts; default false. Travels may take longer by 5 % of the time of the arc.
     pub distortion: bool,
 }
