@@ -3,7 +3,7 @@
 use crate::Polygon;
 use glam::DVec2;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Triangles as indices into the polygon's points, outer ring first and then the holes in order; counter-clockwise.
 ///
@@ -88,28 +88,43 @@ fn within(polygon: &Polygon, all: &ConstrainedDelaunayTriangulation<Corner>) -> 
 
 /// Adds fans until the edges of all triangles together are those of the rim, each in its direction.
 fn closed(mut triangles: Vec<[usize; 3]>, rim: &[[usize; 2]]) -> Vec<[usize; 3]> {
+    // Triangles between corners of one ring would come again in its fan.
+    let rings: Vec<HashSet<usize>> = missing(&triangles, rim).into_iter().map(HashSet::from_iter).collect();
+    triangles.retain(|triangle| !rings.iter().any(|ring| triangle.iter().all(|corner| ring.contains(corner))));
+    for ring in missing(&triangles, rim) {
+        triangles.extend((2..ring.len()).map(|k| [ring[0], ring[k - 1], ring[k]]));
+    }
+    triangles
+}
+
+/// Rings of the edges that triangles lack to have those of the rim as their outer edges.
+fn missing(triangles: &[[usize; 3]], rim: &[[usize; 2]]) -> Vec<Vec<usize>> {
     // How often each edge is still to be run from its lower end to its higher one, less how often back.
-    let mut missing: BTreeMap<[usize; 2], i32> = BTreeMap::new();
+    let mut runs: BTreeMap<[usize; 2], i32> = BTreeMap::new();
     let mut run = |[from, to]: [usize; 2], times: i32| {
-        *missing.entry([from.min(to), from.max(to)]).or_default() += if from < to { times } else { -times };
+        *runs.entry([from.min(to), from.max(to)]).or_default() += if from < to { times } else { -times };
     };
     rim.iter().for_each(|edge| run(*edge, 1));
     triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).for_each(|edge| run(edge, -1));
     let mut ways: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for ([low, high], times) in missing.into_iter().filter(|([low, high], _)| low != high) {
+    for ([low, high], times) in runs.into_iter().filter(|([low, high], _)| low != high) {
         let (from, to) = if times > 0 { (low, high) } else { (high, low) };
         ways.entry(from).or_default().extend((0..times.abs()).map(|_| to));
     }
     // As often as a way leads to a corner, one leads on from it.
+    let mut rings = Vec::new();
     while let Some((first, mut ends)) = ways.pop_first() {
-        let Some(mut last) = ends.pop() else { continue };
+        let Some(mut next) = ends.pop() else { continue };
         ways.insert(first, ends);
-        while let Some(next) = ways.get_mut(&last).and_then(Vec::pop).filter(|next| *next != first) {
-            triangles.push([first, last, next]);
-            last = next;
+        let mut ring = vec![first];
+        while next != first {
+            ring.push(next);
+            let Some(after) = ways.get_mut(&next).and_then(Vec::pop) else { break };
+            next = after;
         }
+        rings.push(ring);
     }
-    triangles
+    rings
 }
 
 /// A point of a polygon.

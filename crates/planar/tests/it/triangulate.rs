@@ -119,6 +119,39 @@ fn an_edge_run_there_and_back_bounds_nothing() {
     assert!((total - 640.0).abs() < 1e-9, "{total}");
 }
 
+/// The edges of all triangles together are those of the polygon, and none of them has the corners of another: a mesh keeps
+/// all of them.
+fn assert_whole(base: &Polygon, case: &str) {
+    let triangles = triangulate_by_edges(base);
+    let mut edges = HashMap::new();
+    let mut run = |[from, to]: [usize; 2], times: i32| {
+        *edges.entry([from.min(to), from.max(to)]).or_insert(0) += if from < to { times } else { -times };
+    };
+    triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).for_each(|edge| run(edge, 1));
+    let mut first = 0;
+    for ring in base.rings() {
+        let count = ring.points().len();
+        (0..count).for_each(|k| run([first + k, first + (k + 1) % count], -1));
+        first += count;
+    }
+    assert!(edges.values().all(|times| *times == 0), "{case}: an edge is open");
+    let mut corners = triangles.clone();
+    corners.iter_mut().for_each(|triangle| triangle.sort_unstable());
+    let all: HashSet<[usize; 3]> = corners.iter().copied().collect();
+    assert_eq!(all.len(), triangles.len(), "{case}: a triangle comes twice");
+}
+
+/// A corner that runs across itself.
+#[test]
+fn a_rectangle_whose_corner_crosses_itself_is_filled() {
+    let corners = [(0.0, 0.0), (40.0, 0.0), (40.0, 19.98), (39.98, 20.0), (40.0, 20.0), (39.98, 19.98), (0.0, 20.0)];
+    for turned in [0.0, 30.0, 211.0] {
+        let way = DVec2::from_angle(f64::to_radians(turned));
+        let base = Polygon { outer: Ring::new(corners.map(|p| way.rotate(p.into())).to_vec()), holes: Vec::new() };
+        assert_whole(&base, &format!("{turned}°"));
+    }
+}
+
 /// Where points of a cut lie on the wrong side of each other by a little, only triangles beside them overlap.
 #[test]
 fn where_edges_cross_the_rest_is_filled_all_the_same() {
@@ -146,17 +179,6 @@ fn where_edges_cross_the_rest_is_filled_all_the_same() {
             [a.perp_dot(b), b.perp_dot(c), c.perp_dot(a)].into_iter().all(|side| side > 0.0)
         };
         assert!(!triangles.iter().any(covers), "{off} mm: a triangle covers the hole");
-        let mut edges = HashMap::new();
-        let mut run = |[from, to]: [usize; 2], times: i32| {
-            *edges.entry([from.min(to), from.max(to)]).or_insert(0) += if from < to { times } else { -times };
-        };
-        triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).for_each(|edge| run(edge, 1));
-        let mut first = 0;
-        for ring in base.rings() {
-            let count = ring.points().len();
-            (0..count).for_each(|k| run([first + k, first + (k + 1) % count], -1));
-            first += count;
-        }
-        assert!(edges.values().all(|times| *times == 0), "{off} mm: an edge is open");
+        assert_whole(&base, &format!("{off} mm"));
     }
 }
