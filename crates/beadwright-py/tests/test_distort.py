@@ -25,9 +25,10 @@ def test_the_plate_bends_as_the_command_says(wall: Plan, command: Command, tmp_p
     assert bent.lift > 0 and bent.deviation > 0 and bent.eccentricity > 0
     wall.save(tmp_path, deposit=False, allow_findings=True)
     rough = ["--voxel", 8, "--voxel-height", 4, "--steps", 4]
+    # plan.json rounds, and rough voxels take a bead or leave it.
     said = json.loads(command("distort", tmp_path / "plan.json", *rough, "--json").stdout)
-    assert said["released"]["lift"]["largest"] == pytest.approx(bent.lift, rel=1e-3)
-    assert said["eccentricity"]["score"]["mean"] == pytest.approx(bent.eccentricity, rel=1e-3)
+    assert said["released"]["lift"]["largest"] == pytest.approx(bent.lift, rel=1e-2)
+    assert said["eccentricity"]["score"]["mean"] == pytest.approx(bent.eccentricity, rel=1e-2)
 
 
 def test_all_moves_in_proportion_to_the_shrinkage(wall: Plan) -> None:
@@ -37,8 +38,10 @@ def test_all_moves_in_proportion_to_the_shrinkage(wall: Plan) -> None:
     assert np.abs(2 * moved - more).max() < 1e-6 * np.abs(more).max()
     # The figures are those of the shape.
     assert places.shape == moved.shape and places.shape[1] == 3
-    firm = np.abs(once.shape(released=False).moved).max()
-    assert firm < np.abs(moved).max()
+    assert once.shape(released=False).moved.shape == moved.shape
+    # Opened clamps let the plate go.
+    ranges = [once.values[state]["lift"]["range"] for state in ("clamped", "released")]
+    assert ranges[0] < ranges[1]
 
 
 def test_what_cannot_be_computed_is_refused(wall: Plan) -> None:

@@ -324,7 +324,7 @@ fn plans_and_programs_are_simulated_alike() {
 }
 
 #[test]
-fn strategies_are_compared_and_papers_reproduced() {
+fn strategies_are_compared() {
     let folder = folder_with("star");
     let arguments = ["compare", "star.stl", "--layers", "2,4-5", "-s", "contour", "-s", "compound", "-o", "c.html"];
     let table = ok(folder.path(), &arguments);
@@ -332,14 +332,24 @@ fn strategies_are_compared_and_papers_reproduced() {
     let page = fs::read_to_string(folder.path().join("c.html")).unwrap();
     assert!(page.contains("layer 4, z ") && !page.contains("layer 3,"));
     assert!(refused(folder.path(), &["compare", "star.stl", "--layers", "0"], 2).contains("counted from 1"));
+}
+
+#[test]
+fn the_paper_on_compound_paths_is_reproduced() {
+    let folder = TempDir::new().unwrap();
     let said = ok(folder.path(), &["reproduce", "c-compound", "-o", "papers"]);
     assert!(said.contains("void at 0.738 w over void at 0.591 w, at least 5: 30.4"));
     assert!(folder.path().join("papers/reproduce-c-compound.html").is_file());
+    assert!(refused(folder.path(), &["reproduce", "x"], 1).contains("c-compound"));
+}
+
+#[test]
+fn the_paper_on_skeletons_is_reproduced() {
+    let folder = TempDir::new().unwrap();
     let said = ok(folder.path(), &["reproduce", "a-skeleton-hybrid", "-o", "papers"]);
     assert!(said.contains("10.5 mm/s fits"), "{said}");
     let written = files(&folder.path().join("papers"));
     assert!(written.contains_key("PROPELLER.src") && written.contains_key("PROPELLER_L010.src"));
-    assert!(refused(folder.path(), &["reproduce", "x"], 1).contains("c-compound"));
 }
 
 #[test]
