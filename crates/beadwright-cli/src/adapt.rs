@@ -96,8 +96,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let number = arguments.after_layer as usize;
     let build = Unfinished { header, layers, profile: &profile, number };
     let adapted = Adapted::of(build, scan, how, arguments.limits.rules(&profile)).map_err(|error| {
-        let place = if error == AdaptError::NotLevel { &arguments.plan } else { &arguments.scan };
-        anyhow::Error::from(error).context(place.display().to_string())
+        // What lies inside names its remedy.
+        let (error, place) = match error {
+            AdaptError::Align(error) => (anyhow::Error::from(error), &arguments.scan),
+            AdaptError::See(error) => (anyhow::Error::from(error), &arguments.scan),
+            other => (anyhow::Error::from(other), &arguments.plan),
+        };
+        error.context(place.display().to_string())
     })?;
     bar.finish_and_clear();
     let mut folder = Folder::new(&arguments.output)?;
