@@ -34,7 +34,7 @@ fn means(history: &History) -> Vec<f64> {
 fn a_build_is_as_warm_however_it_leans() {
     for (name, base) in [("cross", "cmt-al2319-kuka"), ("star", "cmt-steel-robots"), ("vase", "cmt-steel-robots")] {
         let (plan, mut profile) = planned(name, &common::profile(base));
-        let layers = &plan.layers[..plan.layers.len().min(10)];
+        let layers = &plan.layers[..plan.layers.len().min(16)];
         let level = means(&warmed(layers, &profile));
         for up in ["0/0/1", "1/0/0", "1/1/1", "-0.3/0.2/-0.8"] {
             profile.layers.chart = format!("plane:up={up},through=0/0/1").parse().unwrap();
