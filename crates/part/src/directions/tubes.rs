@@ -77,10 +77,8 @@ pub(super) fn tubes(whole: &State, judge: &Judge) -> Option<Division> {
     }
     let hangs = |sample: &&Sample| {
         let own = pieces.iter().find(|piece| piece.has(sample.place, OVER));
-        let hangs = |up: DVec3| {
-            if lean > 0.0 { judge.hangs_beyond(lean + BEYOND, sample, up) } else { judge.hangs(sample, up) }
-        };
-        !judge.stands(sample, judge.table()) && own.is_none_or(|own| hangs(stacked(own, sample.place)))
+        let hangs = |own: &Piece| judge.hangs_beyond(lean + BEYOND, sample, stacked(own, sample.place));
+        !judge.stands(sample, judge.table()) && own.is_none_or(hangs)
     };
     let hanging = area(whole.samples.iter().filter(hangs));
     let fits = tilt <= judge.settings.tilt + BEYOND && BETTER * hanging < whole.hanging[0];
@@ -225,7 +223,7 @@ impl Tree {
         self.pieces.push(Piece { chart: Chart::default(), within, also: Vec::new(), on_stock: false });
     }
 
-    /// A tube on a carrier, beside what has grown in much the same direction, in the layers that [`Tree::layers`] chooses.
+    /// A tube on a carrier, beside what has grown in much the same direction, in the layers that [`Layers::of`] chooses.
     fn grow(&mut self, carrier: &Grown, tube: Tube, up: DVec3, judge: &Judge) {
         let (own, other) = nearest(&tube, &carrier.tube);
         let start = tube.through + tube.axis * own;

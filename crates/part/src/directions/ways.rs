@@ -82,7 +82,7 @@ impl Judge {
         -sample.normal.dot(up) > self.steep
     }
 
-    /// Whether a sample overhangs where walls may lean this much, °.
+    /// The same where walls may lean this much, °, if that is more.
     pub(super) fn hangs_beyond(&self, lean: f64, sample: &Sample, up: DVec3) -> bool {
         -sample.normal.dot(up) > self.steep.max(lean.to_radians().sin())
     }

@@ -1,6 +1,6 @@
 //! Trees of round bars: the bars are found however the tree is turned, and the cylinders that part them lose nothing.
 
-use bead_part::chart::Bound;
+use bead_part::chart::{Bound, Chart};
 use bead_part::directions::{Division, Piece, Settings, divisions};
 use bead_part::model::Mesh;
 use bead_part::model::solid::Solid;
@@ -86,6 +86,62 @@ fn bars_that_branch_are_built_along_their_axes_at_any_angle() {
                 assert_eq!(lists.filter(has).count(), 1, "{case}: the tip at {tip}");
             }
         }
+    }
+}
+
+/// A trunk, a branch that leans this much, and a branch on that one along a direction, as one mesh; and the last of them.
+fn branch_on_branch(lean: f64, along: DVec3, turn: DQuat) -> (Mesh, Bar) {
+    let bars = tree(&[(57.0, lean, 0.0)], 0.0);
+    let first = bars[1];
+    let second = Bar { from: first.from + 75.0 * first.along, along: along.normalize(), radius: 9.0, length: 100.0 };
+    let mut mesh = united(&bars);
+    let [a, t] = [first.along, first.from].map(|v| format!("{}/{}/{}", v.x, v.y, v.z));
+    let outside: Bound = format!("cylinder:axis={a},through={t},radius=11.5,side=outer").parse().unwrap();
+    mesh.add(outside.part_of(&second.mesh()));
+    mesh.vertices.iter_mut().for_each(|p| *p = turn * *p);
+    (mesh, Bar { from: turn * second.from, along: turn * second.along, ..second })
+}
+
+/// The best division, and the layers of the piece that is bounded by a bar.
+fn layers_of(mesh: &Mesh, bar: &Bar, settings: Settings) -> (Division, Chart) {
+    let best = divisions(mesh, settings, &Task::new()).unwrap().remove(0);
+    let own = |piece: &&Piece| {
+        let mut lists = std::iter::once(&piece.within).chain(&piece.also);
+        lists.any(|bounds| matches!(&bounds[0], Bound::Cylinder(own) if own.axis.cross(bar.along).length() < 0.01))
+    };
+    let chart = best.pieces.iter().find(own).unwrap().chart.clone();
+    (best, chart)
+}
+
+/// Layers square to a branch begin as crescents beside its carrier: a little more lean is better, and it is said.
+#[test]
+fn a_branch_rather_leans_a_little_more_than_it_begins_in_crescents() {
+    for turned in [0.0, 73.0] {
+        let turn = DQuat::from_rotation_z(f64::to_radians(turned));
+        // 48° from layers around the branch that carries it, more from that branch's own layers.
+        let (mesh, bar) = branch_on_branch(52.0, DVec3::new(0.57, 0.67, 0.48), turn);
+        let (best, chart) = layers_of(&mesh, &bar, SETTINGS);
+        let lean = best.lean.unwrap_or_else(|| panic!("at {turned}°: {best:?}"));
+        assert!(lean > 45.0 && lean < 60.0, "at {turned}°: {lean}");
+        assert!(!matches!(chart, Chart::Plane(_)), "at {turned}°: {chart}");
+        assert!(best.hanging < 200.0, "at {turned}°: {} mm² hang", best.hanging);
+        // Nothing is said where no wall leans more than it should.
+        let (wide, _) = layers_of(&mesh, &bar, Settings { lean: 60.0, ..SETTINGS });
+        assert_eq!(wide.lean, None, "at {turned}°");
+    }
+}
+
+/// Layers around a branch may face below the horizon only as far as the part may be turned.
+#[test]
+fn a_branch_on_a_branch_gets_layers_around_it_where_the_part_can_be_turned_over() {
+    for turned in [0.0, 131.0] {
+        let turn = DQuat::from_rotation_z(f64::to_radians(turned));
+        let (mesh, bar) = branch_on_branch(30.0, DVec3::new(0.783, 0.585, 0.21), turn);
+        let (best, chart) = layers_of(&mesh, &bar, SETTINGS);
+        assert!(matches!(chart, Chart::Plane(_)) && best.tilt <= 91.0, "at {turned}°: {chart}, {}", best.tilt);
+        let (best, chart) = layers_of(&mesh, &bar, Settings { tilt: 120.0, ..SETTINGS });
+        assert!(matches!(chart, Chart::Cylinder(_)), "at {turned}°: {chart}");
+        assert!(best.tilt > 100.0 && best.tilt < 121.0 && best.lean.is_none(), "at {turned}°: {}", best.tilt);
     }
 }
 
