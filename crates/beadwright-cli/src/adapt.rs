@@ -110,7 +110,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let written = folder.commit()?;
     let mut out = std::io::stdout().lock();
     if arguments.json {
-        return Ok(writeln!(out, "{:#}", adapted.json(number))?);
+        return Ok(writeln!(out, "{:#}", adapted.json())?);
     }
     adapted.sentences().iter().try_for_each(|sentence| writeln!(out, "{sentence}"))?;
     if adapted.followed.clipped > 0 {

@@ -121,8 +121,6 @@ pub(crate) fn built_deviation<'py>(
 pub(crate) struct Adapted {
     adapted: library::Adapted,
     plan: Py<Plan>,
-    /// Number of layers that are welded.
-    number: usize,
 }
 
 /// Why nothing was written.
@@ -160,7 +158,7 @@ pub(crate) fn adapt(
     let (build, scan) = (plan.get().unfinished(number), scan.0.clone());
     let adapted = Running::new(None, None)
         .run(py, Some(&planned.header.part), |_| library::Adapted::of(build, scan, how, rules))?;
-    Ok(Adapted { adapted, plan, number })
+    Ok(Adapted { adapted, plan })
 }
 
 #[pymethods]
@@ -168,7 +166,7 @@ impl Adapted {
     /// As `beadwright adapt --json` prints it.
     #[getter]
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(pythonize::pythonize(py, &self.adapted.json(self.number))?)
+        Ok(pythonize::pythonize(py, &self.adapted.json())?)
     }
 
     #[getter]
@@ -185,7 +183,7 @@ impl Adapted {
     fn save(&self, py: Python<'_>, folder: PathBuf, names: Vec<String>) -> PyResult<Vec<String>> {
         let plan = self.plan.get();
         let (profile, posts) = plan.0.posts(names)?;
-        let build = Unfinished { profile: &profile, ..plan.unfinished(self.number) };
+        let build = Unfinished { profile: &profile, ..plan.unfinished(self.adapted.number) };
         let programs = Programs::of(&posts, &profile.job(&plan.0.header.part)).refuse(None)?;
         let written = || {
             let mut folder = Folder::new(&folder)?;

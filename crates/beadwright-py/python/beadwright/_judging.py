@@ -14,7 +14,7 @@ from beadwright._errors import BeadwrightError
 from beadwright._page import Page
 from beadwright._progress import Progress, steps
 from beadwright._plan import Model, Plan, Process, part_of, profile_of
-from beadwright._profile import strategies as all_strategies
+from beadwright._profile import Profile, strategies as all_strategies
 
 if TYPE_CHECKING:
     from beadwright._array import Floats
@@ -178,7 +178,7 @@ def simulate(
         with steps(progress) as step:
             return Judged(_core.judge(program._inner, grid, threads, step))
     name, text, module = _source(program, modules)
-    wanted = profile_of(profile if profile is not None else _core.named_profile(text) or "cmt-al2319-kuka")
+    wanted = _profile_for(text, profile)
     solid = None if part is None else part_of(part)._inner
     reading = (list(arc_on), list(arc_off), bead_width, profile is not None)
     with steps(progress) as step:
@@ -224,7 +224,7 @@ def check(
     Raises :class:`BeadwrightError`.
     """
     name, text, module = _source(program, modules)
-    wanted = profile_of(profile if profile is not None else _core.named_profile(text) or "cmt-al2319-kuka")
+    wanted = _profile_for(text, profile)
     reading = (list(arc_on), list(arc_off), bead_width, profile is not None)
     found = _core.faults(name, text, module, wanted._inner, reading)
     return [Fault(**value, sentence=sentence) for value, sentence in found]
@@ -244,6 +244,11 @@ def height_field(plan: Plan, layer: int, grid: float | None = None) -> HeightFie
 
 def _cell(value: object) -> str:
     return f"{value:.2f}" if isinstance(value, float) else str(value)
+
+
+def _profile_for(text: str, profile: Process | None) -> Profile:
+    """The profile given, or the one that a program names."""
+    return profile_of(profile if profile is not None else _core.named_profile(text) or "cmt-al2319-kuka")
 
 
 def _source(

@@ -33,6 +33,8 @@ pub struct Adapted {
     pub seen: Seen,
     /// The layers that follow.
     pub followed: Followed,
+    /// Number of layers that were welded.
+    pub number: usize,
     /// The scan in words.
     scanned: String,
     how: Align,
@@ -72,12 +74,12 @@ impl Adapted {
         let aligned = align(points, layers.get(..number).unwrap_or(layers), width, how)?;
         let seen = see(layers, number, &aligned.points, plan::deposit_settings(profile).nominal)?;
         let followed = follow(layers, number, &seen, width, &rules);
-        Ok(Self { aligned, seen, followed, scanned, how, rules })
+        Ok(Self { aligned, seen, followed, number, scanned, how, rules })
     }
 
     /// What the scan shows and what follows from it, as sentences.
     pub fn sentences(&self) -> Vec<String> {
-        let Self { aligned, seen, followed, scanned, how, rules } = self;
+        let Self { aligned, seen, followed, scanned, how, rules, .. } = self;
         let Spread { mean, rms, low, high } = seen.error;
         let mut sentences = vec![
             format!(
@@ -122,11 +124,11 @@ impl Adapted {
     }
 
     /// The figures as JSON; lengths in mm, the turn in degrees, metal as multiples of the planned metal.
-    pub fn json(&self, number: usize) -> serde_json::Value {
+    pub fn json(&self) -> serde_json::Value {
         let Followed { layers, planned, pieces, clipped, metal, end } = &self.followed;
         let Aligned { shift, turn, astray, plate, .. } = &self.aligned;
         serde_json::json!({
-            "after_layer": number,
+            "after_layer": self.number,
             "error": self.seen.error,
             "points": self.seen.points,
             "covered": self.seen.covered,
@@ -151,7 +153,7 @@ impl Adapted {
         programs: Programs,
         mut take: impl FnMut(Vec<Chunk>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let Unfinished { header, layers, profile, number } = build;
+        let (Unfinished { header, layers, profile, .. }, number) = (build, self.number);
         let (sentences, built) = (self.sentences(), &layers[..number]);
         let z = built.last().map_or(0.0, |layer| layer.z);
         let page = page(&header.part, number, z, &self.seen, &sentences).html();
