@@ -47,7 +47,7 @@ const STEADY: (f64, f64) = (1.0, 2e-3);
 /// Shortest time from which a drift can be computed, s.
 const LONG: f64 = 300.0;
 
-/// Ends whose offset differs by more than this, s, from the median of so many on each side are left out of the fit.
+/// Ends whose offset differs by more than this, s, from the median of this many on each side are left out of the fit.
 const FAR: f64 = 0.3;
 const AROUND: usize = 6;
 

@@ -7,7 +7,7 @@ use jiff::tz::Offset;
 /// How the times of a log are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Style {
-    /// Numbers, in units of so many seconds.
+    /// Numbers, in a unit that lasts this many seconds.
     Number(f64),
     /// ISO 8601; without an offset it counts as UTC.
     Iso,

@@ -259,6 +259,6 @@ fn trace(sheet: &mut Sheet, part: &Part<'_>, chain: &str) {
     let input = |file: &FileHash| plain([file.name.clone(), file.bytes.to_string(), file.sha256.clone()]);
     sheet.table(&["file read", "bytes", "SHA-256"], &part.inputs.iter().map(input).collect::<Vec<_>>());
     sheet.text(&format!(
-        "Hash over all passes: {chain}. record.json holds one for each pass, and `beadwright record --verify` names what was changed."
+        "Hash over all passes: {chain}. record.json holds one for each pass, so that a later change can be found."
     ));
 }

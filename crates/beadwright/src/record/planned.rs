@@ -4,14 +4,16 @@ use super::{Place, PlannedPass, Settings};
 use crate::export::{Beads, Piece};
 use crate::pass::PassKind;
 use crate::profile::Profile;
+use std::collections::HashSet;
 
 /// The passes of a plan with the times at which they are welded. The turns of a helix are one pass, that of its first layer.
 pub fn planned(beads: &Beads<'_>) -> Vec<PlannedPass> {
+    let going_on: HashSet<usize> =
+        beads.layers.iter().filter(|layer| layer.lit.before).map(|layer| layer.index + 1).collect();
     let mut passes: Vec<PlannedPass> = Vec::new();
     for pieces in beads.pieces().chunk_by(|a, b| (a.layer, a.pass) == (b.layer, b.pass)) {
         let pass = pass(pieces, beads.profile);
-        let goes_on = beads.layers.iter().any(|layer| layer.index + 1 == pass.layer && layer.lit.before);
-        match passes.last_mut().filter(|_| goes_on) {
+        match passes.last_mut().filter(|_| going_on.contains(&pass.layer)) {
             Some(helix) => {
                 helix.path.extend(pass.path);
                 helix.out = pass.out;

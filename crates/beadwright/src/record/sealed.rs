@@ -2,7 +2,7 @@
 //!
 //! The first line holds what belongs to the whole part. Each pass has a line of its own, with the SHA-256 of that line and of
 //! the hash before it. Then follow the hashes of the other files, and the seal: the hash of all text before it. Whoever changes the
-//! record can compute all hashes again; only a seal that is kept elsewhere then tells.
+//! record can compute all hashes again; only a seal that is kept elsewhere shows that.
 
 use super::{FileHash, JSON, Part, Totals, chain, link, sha256};
 use serde::Deserialize;

@@ -58,7 +58,7 @@ impl What {
     }
 }
 
-/// A row that tells of an event.
+/// An event in a row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Event {
     /// What happened.

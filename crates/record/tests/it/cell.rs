@@ -120,7 +120,7 @@ impl<'a> Cell<'a> {
         self.done.iter().find(|done| done.planned == planned).unwrap()
     }
 
-    /// Current, voltage and feed at a time, without noise; what the power source measures 0.1 s after it is told to burn.
+    /// Current, voltage and feed at a time, without noise; what the power source measures 0.1 s after it is commanded.
     fn power(&self, time: f64) -> [f64; 3] {
         let next = self.done.partition_point(|done| done.end <= time);
         let Some(done) = self.done.get(next).filter(|done| time >= done.start + 0.1) else { return [0.5, 62.0, 0.0] };
