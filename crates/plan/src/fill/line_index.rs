@@ -12,6 +12,9 @@ pub struct LineIndex {
 /// Number of the line, number of the piece in it, and its ends.
 type Piece = (usize, usize, DVec2, DVec2);
 
+/// A place this near the edge of a cell counts as in both, mm: a rounding error leaves no line out.
+const EDGE: f64 = 1e-9;
+
 /// The first line met in a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sight {
@@ -37,7 +40,7 @@ impl LineIndex {
     /// Adds a line.
     pub fn add_line(&mut self, number: usize, points: &[DVec2]) {
         for (k, pair) in points.windows(2).enumerate() {
-            for cell in covered(pair[0], pair[1], self.size) {
+            for cell in cells_along(pair[0], pair[1], self.size, EDGE) {
                 self.cells.entry(cell).or_default().push((number, k, pair[0], pair[1]));
             }
         }
@@ -74,6 +77,21 @@ impl LineIndex {
     fn around(&self, a: DVec2, b: DVec2) -> impl Iterator<Item = Piece> + '_ {
         covered(a, b, self.size).flat_map(|cell| self.cells.get(&cell).into_iter().flatten().copied())
     }
+}
+
+/// The square cells of side `size` (mm) that come within `reach` (mm) of a segment, and a few beside them, column by
+/// column: a long slanted line has no more than its length asks for.
+pub fn cells_along(a: DVec2, b: DVec2, size: f64, reach: f64) -> impl Iterator<Item = IVec2> {
+    let (a, b) = if a.x <= b.x { (a / size, b / size) } else { (b / size, a / size) };
+    let reach = reach / size;
+    let number = |place: f64| place.floor() as i32;
+    let slope = if b.x > a.x { (b.y - a.y) / (b.x - a.x) } else { 0.0 };
+    (number(a.x - reach)..=number(b.x + reach)).flat_map(move |x| {
+        let at = |edge: f64| a.y + slope * (edge.clamp(a.x, b.x) - a.x);
+        let edge = f64::from(x);
+        let (from, to) = if slope == 0.0 { (a.y, b.y) } else { (at(edge - reach), at(edge + 1.0 + reach)) };
+        (number(from.min(to) - reach)..=number(from.max(to) + reach)).map(move |y| IVec2::new(x, y))
+    })
 }
 
 /// The cells of the box around two points.

@@ -1,24 +1,22 @@
 //! Whether passes lie on metal, judged by the beads of the passes below.
 
-use super::charted::Across;
-use super::turns::{Bands, unrolled_once};
-use crate::fill::line_index::LineIndex;
+mod hanging;
+mod metal;
+
 use crate::layer::Layer;
 use crate::pass::Pass;
+use crate::plan::charted::Across;
+use crate::plan::turns::{Bands, unrolled_once};
 use crate::profile::Profile;
 use crate::slice::Half;
 use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
-use planar::polyline::distance_squared_to_segment;
+use hanging::{Hanging, Places, hanging};
+use metal::{CLEAR, Metal};
 use planar::{Polygon, Region};
 
-/// A pass with less than this fraction of its length over metal lies in the air.
-const LEAST: f64 = 0.5;
 /// So does one with a stretch of this length, in bead widths, that is clear of all metal below it.
 const BRIDGE: f64 = 2.0;
-/// A place this far beyond the edge of a bead, in bead widths, is clear of it: less than a quarter of what is welded
-/// there lies on it.
-const CLEAR: f64 = 0.25;
 /// A new island in the air is left out up to this area, in squared bead widths, and up to this fraction of its layer,
 /// unless the layer below has no passes.
 const SMALL: f64 = 4.0;
@@ -78,13 +76,6 @@ pub(super) struct Under {
     pub(super) height: f64,
 }
 
-/// Metal laid by passes.
-struct Metal {
-    index: LineIndex,
-    /// Half the width of each piece of each pass, mm.
-    halves: Vec<Vec<f64>>,
-}
-
 impl Support {
     /// The support of a body that stands on `footing`.
     pub(super) fn on(footing: Footing) -> Self {
@@ -124,14 +115,15 @@ impl Support {
             let within = |p: DVec2| below.iter().any(|island| island.contains(p));
             let bands = Bands::of_layer(layer, profile);
             let once = |p: DVec2| bands.as_ref().map_or(p, |bands| bands.place(p));
-            let below = |p: DVec2| match metal.is_at(p, 0.0) || within(p) {
-                true => Below::Metal,
-                false if metal.is_at(p, CLEAR * width) => Below::Edge,
-                false => Below::Air,
+            // From one turn of the seam to the next no bead goes on.
+            let room = |p: DVec2, way: DVec2, reach: f64| {
+                let p = once(p);
+                let room = metal.room(p, way, reach).map(|room| if bands.is_none() { room } else { 0.0 });
+                room.or_else(|| within(p).then_some(0.0))
             };
             let bridge = if profile.prints() { f64::INFINITY } else { BRIDGE * width };
-            let hanging: Vec<Option<Hanging>> =
-                layer.passes.iter().map(|pass| hanging(pass, width / SAMPLES, bridge, |p| below(once(p)))).collect();
+            let places = Places { step: width / SAMPLES, bridge, clear: CLEAR * width };
+            let hanging: Vec<Option<Hanging>> = layer.passes.iter().map(|pass| hanging(pass, places, room)).collect();
             self.left_out = self.take_out(layer, &hanging, width, once);
         } else if !alike {
             self.left_out.clear();
@@ -215,77 +207,4 @@ impl Support {
 fn stands_on(island: &Polygon, lower: &Polygon) -> bool {
     let common = Region::from(island.clone()).intersection(&Region::from(lower.clone())).area();
     common > RESTS * island.area().min(lower.area())
-}
-
-/// What lies below a place.
-#[derive(Clone, Copy, PartialEq)]
-enum Below {
-    Metal,
-    /// The edge of a bead is near enough for the next bead to adhere to it.
-    Edge,
-    Air,
-}
-
-/// How a pass overhangs.
-#[derive(Clone, Copy)]
-struct Hanging {
-    /// Length without metal below, mm.
-    length: f64,
-    /// The middle of the longest stretch without metal below.
-    place: DVec2,
-}
-
-/// Checks whether less than [`LEAST`] of a pass's length lies over metal, or a stretch as long as `bridge` (mm) is
-/// clear of it, every `step` (mm).
-fn hanging(pass: &Pass, step: f64, bridge: f64, below: impl Fn(DVec2) -> Below) -> Option<Hanging> {
-    let mut places: Vec<(DVec2, Below)> = places_along(pass, step).into_iter().map(|p| (p, below(p))).collect();
-    if pass.closed {
-        // No stretch may be split at the seam of a closed pass.
-        let held = places.iter().position(|(_, below)| *below == Below::Metal).unwrap_or(0);
-        places.rotate_left(held);
-    }
-    let is_free = |below: Below| below != Below::Metal;
-    let free = places.iter().filter(|(_, below)| is_free(*below)).count();
-    let stretches = |a: &(DVec2, Below), b: &(DVec2, Below)| is_free(a.1) == is_free(b.1);
-    let longest = places.chunk_by(stretches).filter(|s| is_free(s[0].1)).max_by_key(|stretch| stretch.len())?;
-    let clear = places.chunk_by(|a, b| a.1 == b.1).filter(|s| s[0].1 == Below::Air).map(<[_]>::len).max().unwrap_or(0);
-    let hangs = (places.len() - free) < (LEAST * places.len() as f64).ceil() as usize || clear as f64 * step >= bridge;
-    hangs.then(|| Hanging { length: free as f64 * step, place: longest[longest.len() / 2].0 })
-}
-
-/// Places on a pass, `step` (mm) apart.
-fn places_along(pass: &Pass, step: f64) -> Vec<DVec2> {
-    let (mut along, mut next, mut places) = (0.0, 0.0, Vec::new());
-    for piece in pass.segments().filter(|piece| piece.from.is_finite()) {
-        let length = piece.length();
-        while next <= along + length {
-            let share = if length > 0.0 { (next - along) / length } else { 0.0 };
-            places.push(piece.from.lerp(piece.to, share).truncate());
-            next += step;
-        }
-        along += length;
-    }
-    places
-}
-
-impl Metal {
-    fn of(passes: &[Pass], width: f64) -> Self {
-        let halves: Vec<Vec<f64>> =
-            passes.iter().map(|pass| pass.segments().map(|piece| piece.width / 2.0).collect()).collect();
-        let widest = halves.iter().flatten().copied().fold(width / 2.0, f64::max);
-        let mut index = LineIndex::new(widest + CLEAR * width);
-        for (number, pass) in passes.iter().enumerate() {
-            let ends = pass.segments().next().map(|piece| piece.from).into_iter().chain(pass.segments().map(|p| p.to));
-            index.add_line(number, &ends.map(|p| p.truncate()).collect::<Vec<_>>());
-        }
-        Self { index, halves }
-    }
-
-    /// Whether there is metal at a place, or within `reach` (mm) of it.
-    fn is_at(&self, p: DVec2, reach: f64) -> bool {
-        self.index.near(p).any(|(line, piece, a, b)| {
-            let half = self.halves[line].get(piece).copied().unwrap_or_default() + reach;
-            distance_squared_to_segment(p, a, b) <= half * half
-        })
-    }
 }
