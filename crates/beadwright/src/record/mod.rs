@@ -99,9 +99,11 @@ impl Part<'_> {
     /// [`FileError`].
     pub fn files(&self) -> Result<Sealed, FileError> {
         let chained = sealed::Chained::of(self)?;
-        let mut files = vec![(HTML.to_owned(), page::page(self, chained.last()).html().into_bytes())];
-        #[cfg(feature = "parquet")]
-        files.push((PARQUET.to_owned(), table::table(self)?));
+        let files = vec![
+            (HTML.to_owned(), page::page(self, chained.last()).html().into_bytes()),
+            #[cfg(feature = "parquet")]
+            (PARQUET.to_owned(), table::table(self)?),
+        ];
         Ok(chained.sealed(files)?)
     }
 }
