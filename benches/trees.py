@@ -78,7 +78,12 @@ def save(bars, path):
     whole = bar(*bars[0])
     for own in bars[1:]:
         whole += bar(*own)
-    mesh = whole.to_mesh()
+    write(whole, path)
+
+
+def write(solid, path):
+    """A solid of manifold3d as a binary STL file."""
+    mesh = solid.to_mesh()
     corners = np.array(mesh.vert_properties)[:, :3][np.array(mesh.tri_verts)]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
