@@ -5,7 +5,7 @@ use crate::common;
 use beadwright::example;
 use beadwright::model::{Mesh, import};
 use beadwright::pass::{Along, Pass};
-use beadwright::plan::{self, Plan};
+use beadwright::plan::Plan;
 use beadwright::program::{Circle, Instruction, ProgramSettings, Programmer};
 use beadwright::task::Task;
 use common::{model, profile_by};
@@ -16,7 +16,7 @@ fn fitted() -> ProgramSettings {
 }
 
 fn planned(mesh: &Mesh, profile: &str, strategy: &str) -> Plan {
-    plan::plan("part", mesh, &profile_by(profile, strategy), &Task::new()).unwrap()
+    common::planned_once("part", mesh, &profile_by(profile, strategy)).unwrap()
 }
 
 /// Instructions of every layer, as planned and fitted.
@@ -61,13 +61,14 @@ fn farthest(points: &[DVec3], line: &[DVec3]) -> f64 {
     let (mut near, mut worst) = (0_usize, 0.0_f64);
     for &p in points {
         let window = near.saturating_sub(80)..(near + 80).min(line.len() - 1);
-        let to = |i: &usize| {
-            let (a, b) = (line[*i], line[*i + 1]);
+        let to = |i: usize| {
+            let (a, b) = (line[i], line[i + 1]);
             let t = ((p - a).dot(b - a) / (b - a).length_squared().max(1e-18)).clamp(0.0, 1.0);
-            p.distance(a.lerp(b, t))
+            p.distance_squared(a.lerp(b, t))
         };
-        near = window.min_by(|i, j| to(i).total_cmp(&to(j))).unwrap();
-        worst = worst.max(to(&near));
+        let (there, squared) = window.map(|i| (i, to(i))).min_by(|(_, a), (_, b)| a.total_cmp(b)).unwrap();
+        near = there;
+        worst = worst.max(squared.sqrt());
     }
     worst
 }

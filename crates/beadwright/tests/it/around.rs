@@ -43,7 +43,7 @@ fn around_from(axis: DVec3, radius: f64, side: &str, seam: u32) -> Profile {
 }
 
 fn planned(mesh: &Mesh, profile: &Profile) -> Plan {
-    plan::plan("pipe", mesh, profile, &Task::new()).unwrap()
+    common::planned_once("pipe", mesh, profile).unwrap()
 }
 
 /// Figures of the worst layer: void, overfill and metal outside, %.

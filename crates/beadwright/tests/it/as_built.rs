@@ -6,7 +6,7 @@ use beadwright::as_built::{AsBuilt, as_built};
 use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::model::{Mesh, solid::Solid};
-use beadwright::plan::{self, Plan};
+use beadwright::plan::Plan;
 use beadwright::planar::{Polygon, Ring};
 use beadwright::profile::{Body, Profile};
 use beadwright::task::Task;
@@ -18,7 +18,7 @@ fn compared(layers: &[Layer], profile: &Profile, mesh: &Mesh) -> AsBuilt {
 }
 
 fn planned(mesh: &Mesh, profile: &Profile) -> Plan {
-    plan::plan("part", mesh, profile, &Task::new()).unwrap()
+    common::planned_once("part", mesh, profile).unwrap()
 }
 
 /// Fraction of the metal's surface that lies within 0.6 bead heights of the part's.

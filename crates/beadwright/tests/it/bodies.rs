@@ -31,7 +31,7 @@ fn y_tube() -> (Mesh, Profile) {
 }
 
 fn planned(mesh: &Mesh, profile: &Profile) -> Result<Plan, PlanError<Infallible>> {
-    plan::plan("part", mesh, profile, &Task::new())
+    common::planned_once("part", mesh, profile)
 }
 
 /// A box from its lowest to its highest corner.

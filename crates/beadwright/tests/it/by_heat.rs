@@ -50,7 +50,7 @@ fn fitted(profile: &Profile) -> BeadByHeat {
 }
 
 fn planned(mesh: &Mesh, profile: &Profile) -> Plan {
-    plan::plan("part", mesh, profile, &Task::new()).unwrap()
+    common::planned_once("part", mesh, profile).unwrap()
 }
 
 /// A block on the plate, turned about the build direction.

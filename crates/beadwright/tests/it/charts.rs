@@ -24,7 +24,7 @@ fn charted(chart: &str) -> Profile {
 }
 
 fn planned(mesh: &Mesh, profile: &Profile) -> Plan {
-    plan::plan("part", mesh, profile, &Task::new()).unwrap()
+    common::planned_once("part", mesh, profile).unwrap()
 }
 
 fn mesh(name: &str) -> Mesh {

@@ -1,5 +1,6 @@
 //! The deposit model against closed forms, and what it says of the strategies.
 
+use crate::common::planned_once;
 use beadwright::bead::{Bead, Section};
 use beadwright::deposit::{self, Cause, DepositSettings, Figures, Judge, Judgement, Nominal, Stroke, corner, field};
 use beadwright::example;
@@ -7,7 +8,6 @@ use beadwright::layer::Layer;
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
-use beadwright::task::Task;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
 use proptest::prelude::*;
@@ -266,7 +266,7 @@ fn turned_plan(part: &str, turn: f64, strategy: &str, gap: f64) -> Plan {
     profile.layers.level = false;
     let mut mesh = example::find(part).unwrap().mesh();
     mesh.place(1.0, DVec3::new(0.0, 0.0, turn));
-    plan::plan(part, &mesh, &profile, &Task::new()).unwrap()
+    planned_once(part, &mesh, &profile).unwrap()
 }
 
 fn figures(plan: &Plan, step: f64) -> Figures {

@@ -1,12 +1,12 @@
 //! The deposit model as it is run against its reference, every point in double precision: plans by strategy and turn.
 
+use crate::common::planned_once;
 use beadwright::deposit::{DepositSettings, Judge, Judgement};
 use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::pass::{Along, Pass, PassKind};
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
-use beadwright::task::Task;
 use glam::{DVec2, DVec3};
 use planar::{Polygon, Ring};
 
@@ -29,7 +29,7 @@ fn plan(part: &str, turn: f64, strategy: &str) -> Plan {
     profile.fill.strategy = strategy.parse().unwrap();
     let mut mesh = example::find(part).unwrap().mesh();
     mesh.place(1.0, DVec3::new(0.0, 0.0, turn));
-    plan::plan(part, &mesh, &profile, &Task::new()).unwrap()
+    planned_once(part, &mesh, &profile).unwrap()
 }
 
 /// The layer as it is judged, and by the reference.

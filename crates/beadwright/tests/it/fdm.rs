@@ -31,7 +31,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 fn plan_of(part: &str, profile: &Profile) -> Plan {
     let mut mesh = example::find(part).unwrap().mesh();
     mesh.place(0.2, glam::DVec3::ZERO);
-    plan::plan(part, &mesh, profile, &Task::new()).unwrap()
+    common::planned_once(part, &mesh, profile).unwrap()
 }
 
 fn gcode(plan: &Plan, profile: &Profile) -> String {

@@ -4,7 +4,7 @@ use crate::common;
 
 use beadwright::heat::{self, HeatSettings, History, Interpass, LayerHeat};
 use beadwright::layer::Layer;
-use beadwright::plan::{self, Plan};
+use beadwright::plan::Plan;
 use beadwright::profile::{Body, Profile};
 use beadwright::{Metrics, Task, example};
 
@@ -12,7 +12,7 @@ use beadwright::{Metrics, Task, example};
 fn planned(name: &str, profile: &Profile) -> (Plan, Profile) {
     let (example, mut profile) = (example::find(name).unwrap(), profile.clone());
     profile.layers.bodies = example.bodies().map(|bodies| Body::read(&bodies).unwrap()).unwrap_or_default();
-    let plan = plan::plan(name, &example.mesh(), &profile, &Task::new()).unwrap();
+    let plan = common::planned_once(name, &example.mesh(), &profile).unwrap();
     (plan, profile)
 }
 

@@ -23,7 +23,7 @@ fn profile(helix: bool) -> Profile {
 }
 
 fn planned(mesh: &Mesh, profile: &Profile) -> Plan {
-    plan::plan("tube", mesh, profile, &Task::new()).unwrap()
+    common::planned_once("tube", mesh, profile).unwrap()
 }
 
 fn turned(mesh: &Mesh, degrees: f64) -> Mesh {

@@ -1,7 +1,7 @@
 //! Plans of the example parts with every strategy: inside the outline, nothing crosses, totals add up, programs read
 //! back.
 
-use crate::common::flat;
+use crate::common::{flat, planned_once};
 use crate::readers;
 use beadwright::fill::StrategyName;
 
@@ -32,7 +32,7 @@ fn profile(name: &str, strategy: &str, angle: f64) -> Profile {
 }
 
 fn plan_of(mesh: &Mesh, profile: &Profile) -> Plan {
-    plan::plan("part", mesh, profile, &Task::new()).unwrap()
+    planned_once("part", mesh, profile).unwrap()
 }
 
 /// Parts with walls of one bead; the other strategies have no room in them.

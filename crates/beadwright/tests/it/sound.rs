@@ -30,7 +30,7 @@ fn case(name: &str) -> Vec<u8> {
 
 fn planned(name: &str, strategy: &str) -> Plan {
     let mesh = import(&case(name), &Task::new()).unwrap().mesh;
-    plan::plan(name, &mesh, &profile_by("cmt-al2319-kuka", strategy), &Task::new()).unwrap()
+    common::planned_once(name, &mesh, &profile_by("cmt-al2319-kuka", strategy)).unwrap()
 }
 
 fn is_sound(plan: &Plan, name: &str) {

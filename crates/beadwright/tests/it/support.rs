@@ -3,9 +3,8 @@
 use crate::common;
 
 use beadwright::model::Mesh;
-use beadwright::plan::{self, Plan};
+use beadwright::plan::Plan;
 use beadwright::planar::DVec2;
-use beadwright::task::Task;
 use beadwright::warning::{WarningKind, WarningSummary};
 use common::{flat, profile};
 
@@ -28,7 +27,7 @@ fn blocks(blocks: &[[(f64, f64); 3]], degrees: f64) -> Mesh {
 fn planned(mesh: &Mesh, strategy: &str) -> Plan {
     let mut profile = flat(profile("cmt-al2319-kuka"));
     profile.fill.strategy = strategy.parse().unwrap();
-    plan::plan("part", mesh, &profile, &Task::new()).unwrap()
+    common::planned_once("part", mesh, &profile).unwrap()
 }
 
 fn warning(plan: &Plan, kind: WarningKind) -> Option<WarningSummary> {

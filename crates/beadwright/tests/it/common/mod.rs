@@ -1,13 +1,16 @@
 //! What many tests begin with: profiles, planned examples, shared models.
 #![allow(dead_code, reason = "each test uses some of it")]
 
+use beadwright::Mesh;
 use beadwright::dialect::reading::{ArcCodes, Options, ReadError, ReadProgram, read};
 use beadwright::example;
-use beadwright::plan::{self, Plan};
+use beadwright::plan::{self, Plan, PlanError};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
 use std::collections::BTreeMap;
+use std::convert::Infallible;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// A built-in profile.
 pub(crate) fn profile(name: &str) -> Profile {
@@ -70,7 +73,23 @@ pub(crate) fn page_shows(page: &str, part: &str, text: &str) {
 
 /// An example part, planned.
 pub(crate) fn planned(part: &str, profile: &Profile) -> Plan {
-    plan::plan(part, &example::find(part).unwrap().mesh(), profile, &Task::new()).unwrap()
+    planned_once(part, &example::find(part).unwrap().mesh(), profile).unwrap()
+}
+
+/// A part, planned with a profile: once, however many tests begin with it.
+pub(crate) fn planned_once(name: &str, mesh: &Mesh, profile: &Profile) -> Result<Plan, PlanError<Infallible>> {
+    type Plans = BTreeMap<String, Arc<OnceLock<Option<Plan>>>>;
+    static PLANS: Mutex<Plans> = Mutex::new(Plans::new());
+    let key = serde_json::to_string(&(name, mesh, profile)).unwrap();
+    let place = PLANS.lock().unwrap().entry(key).or_default().clone();
+    let mut refused = None;
+    let plan =
+        place.get_or_init(|| plan::plan(name, mesh, profile, &Task::new()).map_err(|error| refused = Some(error)).ok());
+    match (plan, refused) {
+        (Some(plan), _) => Ok(plan.clone()),
+        (None, Some(error)) => Err(error),
+        (None, None) => plan::plan(name, mesh, profile, &Task::new()),
+    }
 }
 
 /// Reads a program of the built-in profiles back, whose files are known by their names.
@@ -100,7 +119,7 @@ pub(crate) fn model(name: &str) -> Vec<u8> {
 }
 
 /// A round tube that stands on the plate: outer radius, wall, height (mm), and by how much it leans outwards, mm per mm.
-pub(crate) fn tube(radius: f64, wall: f64, height: f64, lean: f64) -> beadwright::Mesh {
+pub(crate) fn tube(radius: f64, wall: f64, height: f64, lean: f64) -> Mesh {
     use beadwright::glam::DVec3;
     const SIDES: u32 = 90;
     let ring = |radius: f64, z: f64| {
@@ -124,5 +143,5 @@ pub(crate) fn tube(radius: f64, wall: f64, height: f64, lean: f64) -> beadwright
         })
     };
     let triangles = [(0, 1), (1, 2), (2, 3), (3, 0)].into_iter().flat_map(side).collect();
-    beadwright::Mesh::from_triangles(vertices, triangles).0
+    Mesh::from_triangles(vertices, triangles).0
 }
