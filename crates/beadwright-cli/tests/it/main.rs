@@ -16,6 +16,8 @@ mod folder;
 mod guide;
 mod heat;
 mod height;
+#[cfg(feature = "listen")]
+mod listen;
 mod opened_elsewhere;
 mod own_dialect;
 mod preform;

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 /// When the arc burns in each pass of a plan, s: while the torch moves, as its exported table says, and so long before and after.
-fn times(at: &Path, [before, after]: [f64; 2]) -> Vec<[f64; 2]> {
+pub(crate) fn times(at: &Path, [before, after]: [f64; 2]) -> Vec<[f64; 2]> {
     ok(at, &["export", "out/plan.json", "-o", "beads.csv"]);
     let table = fs::read_to_string(at.join("beads.csv")).unwrap();
     let mut lines = table.lines();
