@@ -116,6 +116,10 @@ impl<'a> Hearing<'a> {
         self.places.values_mut().for_each(|place| place.last = Instant::now());
     }
 
+    pub(crate) fn is_lost(&self) -> bool {
+        self.lost.is_some()
+    }
+
     /// Does what is due now and then; whether to end.
     pub(crate) fn tick(&mut self) -> Result<bool, ListenError> {
         if self.synced.elapsed() >= SYNC {

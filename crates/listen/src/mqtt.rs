@@ -145,8 +145,9 @@ impl Reader<'_> {
 
     /// Writes the row of a message, then acknowledges it.
     fn publish(&mut self, message: Publish) -> Result<(), ListenError> {
-        // Kept by the broker for new listeners: nobody knows how old it is.
-        let is_wanted = !message.retain && !self.is_known(&message);
+        // What is retained was kept for new listeners: nobody knows how old it is. A topic may be left from an earlier file.
+        let is_ours = self.hearing.source.places().contains(&message.topic.as_str());
+        let is_wanted = is_ours && !message.retain && !self.is_known(&message);
         if is_wanted {
             self.hearing.heard(&message.topic);
             match row(self.hearing.source, &message) {

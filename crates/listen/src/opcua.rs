@@ -229,9 +229,12 @@ impl Reader<'_> {
 
     /// Goes on after the connection was made again.
     async fn again(&mut self, mode: &SessionConnectMode) -> Result<(), ListenError> {
+        // The first connection.
+        if !self.hearing.is_lost() {
+            return Ok(());
+        }
         let kept = match mode {
             SessionConnectMode::ReactivatedSession(_) => true,
-            SessionConnectMode::NewSession(_) if self.subscription == 0 => return Ok(()),
             SessionConnectMode::NewSession(_) => self.transferred().await,
         };
         if kept {

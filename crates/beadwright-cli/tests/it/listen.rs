@@ -268,6 +268,45 @@ fn messages_that_cannot_be_read_and_silent_topics_are_named() {
     assert!(log.contains("Z,,,180.5,\n") && log.contains("Z,,,181,\n") && log.contains(",unreadable,"), "{log}");
 }
 
+#[test]
+fn a_log_goes_on_after_a_half_line_and_ctrl_c_ends_it_whole() {
+    if !has_mosquitto() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let (at, port) = (folder.path(), free_port());
+    let source = |name: &str| {
+        format!(
+            "url = \"mqtt://127.0.0.1:{port}\"\ntime = {{ field = \"at\", unit = \"iso\" }}\n[columns]\n\
+             {name} = {{ topic = \"t\", field = \"values.0\" }}\n"
+        )
+    };
+    fs::write(at.join("power.toml"), source("temperature")).unwrap();
+    let _running = broker(at, port);
+    fs::create_dir(at.join("logs")).unwrap();
+    // As a power cut leaves it.
+    let before = "time,event,note,temperature\n2026-11-28T10:00:00.000000Z,,,180\n2026-11-28T10:00:01.0";
+    fs::write(at.join("logs/power.csv"), before).unwrap();
+    let Running(child) = &mut listen(at, "power.toml", &[]);
+    let payload = "{\"at\":\"2026-11-28T11:00:05.5+01:00\",\"values\":[200.5,1]}";
+    let arguments = ["-h", "127.0.0.1", "-p", &port.to_string(), "-q", "1", "-t", "t", "-m", payload];
+    assert!(Command::new("mosquitto_pub").args(arguments).status().unwrap().success());
+    let log = || fs::read_to_string(at.join("logs/power.csv")).unwrap();
+    wait_for("the row", || log().ends_with("2026-11-28T10:00:05.500000Z,,,200.5\n"));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert!(child.wait().unwrap().success());
+    let text = log();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!((lines.len(), lines[1]), (5, "2026-11-28T10:00:00.000000Z,,,180"), "{text}");
+    assert!(lines[2].starts_with("2026-11-28T10:00:00.000000Z,interrupted,"), "{text}");
+    assert!(lines[3].starts_with("2026-11-28T10:00:05.500000Z,resumed,"), "{text}");
+    // A log of other columns is left as it is.
+    fs::write(at.join("power.toml"), source("current")).unwrap();
+    let said = refused(at, &["listen", "power.toml", "--for", "1", "-o", "logs"], 1);
+    assert!(said.contains("power.csv: the log has other columns"), "{said}");
+    assert_eq!(log(), text);
+}
+
 // --- OPC UA
 
 /// The server, driven by rows.
