@@ -59,6 +59,13 @@ fn listen(at: &Path, source: &str, more: &[&str]) -> Running {
     running
 }
 
+/// Ends listening as a person does.
+fn ctrl_c(listener: Running) {
+    let Running(child) = &mut { listener };
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert!(child.wait().unwrap().success());
+}
+
 /// A row of the cell: seconds since the build began, a number of its own, and the current.
 type Row = (f64, usize, f64);
 
@@ -193,12 +200,11 @@ fn all_that_a_broker_accepted_is_in_the_log_once_though_both_were_killed() {
     listener.kill();
     // What is published while nobody listens.
     assert!(publish(port, &third[..100]));
-    let listener = listen(at, "power.toml", &["--until-idle", "2"]);
+    let listener = listen(at, "power.toml", &[]);
     assert!(publish(port, &third[100..]));
-    let Running(child) = &mut { listener };
-    assert!(child.wait().unwrap().success());
-
     let expected: Vec<usize> = [first, second, third].concat().iter().map(|row| row.1).collect();
+    wait_for("the third part", || numbers(at).len() >= expected.len());
+    ctrl_c(listener);
     let mut seen = numbers(at);
     seen.sort_unstable();
     each_once(&seen, &expected);
@@ -253,7 +259,7 @@ fn messages_that_cannot_be_read_and_silent_topics_are_named() {
     );
     fs::write(at.join("power.toml"), source).unwrap();
     let _running = broker(at, port);
-    let listener = listen(at, "power.toml", &["--for", "3"]);
+    let listener = listen(at, "power.toml", &["--until-idle", "3"]);
     for payload in ["180,5", "much", "181"] {
         let arguments = ["-h", "127.0.0.1", "-p", &port.to_string(), "-t", "i", "-m", payload];
         assert!(Command::new("mosquitto_pub").args(arguments).status().unwrap().success());
@@ -287,14 +293,13 @@ fn a_log_goes_on_after_a_half_line_and_ctrl_c_ends_it_whole() {
     // As a power cut leaves it.
     let before = "time,event,note,temperature\n2026-11-28T10:00:00.000000Z,,,180\n2026-11-28T10:00:01.0";
     fs::write(at.join("logs/power.csv"), before).unwrap();
-    let Running(child) = &mut listen(at, "power.toml", &[]);
+    let listener = listen(at, "power.toml", &[]);
     let payload = "{\"at\":\"2026-11-28T11:00:05.5+01:00\",\"values\":[200.5,1]}";
     let arguments = ["-h", "127.0.0.1", "-p", &port.to_string(), "-q", "1", "-t", "t", "-m", payload];
     assert!(Command::new("mosquitto_pub").args(arguments).status().unwrap().success());
     let log = || fs::read_to_string(at.join("logs/power.csv")).unwrap();
     wait_for("the row", || log().ends_with("2026-11-28T10:00:05.500000Z,,,200.5\n"));
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
-    assert!(child.wait().unwrap().success());
+    ctrl_c(listener);
     let text = log();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!((lines.len(), lines[1]), (5, "2026-11-28T10:00:00.000000Z,,,180"), "{text}");
@@ -395,7 +400,7 @@ fn a_server_is_heard_again_after_its_connections_were_cut_and_after_it_was_kille
     let part = rows.len() / 3;
     let (first, second, lost, third) =
         (&rows[..part], &rows[part..2 * part], &rows[2 * part..2 * part + 50], &rows[2 * part + 50..]);
-    let listener = listen(at, "power.toml", &["--until-idle", "8"]);
+    let listener = listen(at, "power.toml", &[]);
     server.set(begin, first);
     server.cut();
     // It goes on without anybody who listens.
@@ -409,11 +414,10 @@ fn a_server_is_heard_again_after_its_connections_were_cut_and_after_it_was_kille
         fs::read_to_string(at.join("said.txt")).unwrap().contains("kept nothing")
     });
     server.set(begin, third);
-    let Running(child) = &mut { listener };
-    assert!(child.wait().unwrap().success());
-    assert!(!server.changed, "nothing was written or called");
-
     let expected: Vec<usize> = [first, second, third].concat().iter().map(|row| row.1).collect();
+    wait_for("the third part", || numbers(at).len() >= expected.len());
+    ctrl_c(listener);
+    assert!(!server.changed, "nothing was written or called");
     each_once(&numbers(at), &expected);
     let kinds = found(at, passes);
     assert!(kinds.contains("interrupted") && kinds.contains("gap"), "{kinds:?}");
