@@ -21,6 +21,7 @@ mod file;
 mod guide;
 mod heat;
 mod inspect;
+mod learn;
 #[cfg(feature = "listen")]
 mod listen;
 mod memory;

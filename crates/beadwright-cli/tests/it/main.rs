@@ -16,6 +16,7 @@ mod folder;
 mod guide;
 mod heat;
 mod height;
+mod learn;
 #[cfg(feature = "listen")]
 mod listen;
 mod opened_elsewhere;
