@@ -41,9 +41,19 @@ pub(crate) enum Command {
 }
 
 #[derive(clap::Args)]
+#[command(group = clap::ArgGroup::new("goal").args(["want", "from"]).multiple(true))]
 pub(crate) struct Fit {
-    /// CSV with one bead per line; the first line names the columns with their units, such as current_a, width_mm.
-    data: PathBuf,
+    /// CSV with one bead per line; the first line names the columns with their units, such as current_a, width_mm. May be left out
+    /// with --from.
+    #[arg(required_unless_present = "from")]
+    data: Option<PathBuf>,
+    /// Records of builds, by their folders. Alone, they are compared with the profile, and --to writes the values that were measured;
+    /// with the sheet of a trial, one for each plate, what was measured counts instead of what was set.
+    #[arg(long, num_args = 1.., value_name = "RECORD")]
+    from: Vec<PathBuf>,
+    /// Page that says what changes, for records without a sheet.
+    #[arg(long, requires = "from", conflicts_with = "data", default_value = "learnt.html", value_name = "FILE.html")]
+    page: PathBuf,
     /// Columns that are process parameters; all but width and height if left out.
     #[arg(long, value_delimiter = ',', value_name = "A,B,…")]
     inputs: Option<Vec<String>>,
@@ -62,11 +72,12 @@ pub(crate) struct Fit {
     /// Largest deviation of width and layer height from the wanted bead, %.
     #[arg(long, requires = "want", default_value_t = 0.5, value_name = "PERCENT")]
     tolerance: f64,
-    /// Profile on which that for the wanted bead is based: a built-in name or a TOML file.
-    #[arg(long, short, requires = "want", default_value = profile::USUAL, value_name = "NAME|FILE")]
-    profile: String,
-    /// Profile to write: with the bead, the layer height and the parameters of the wanted bead.
-    #[arg(long, requires = "want", value_name = "FILE.toml")]
+    /// Profile on which that for the wanted bead is based (cmt-al2319-kuka if left out), or the one of the builds that were recorded: a
+    /// built-in name or a TOML file.
+    #[arg(long, short, requires = "goal", value_name = "NAME|FILE")]
+    profile: Option<String>,
+    /// Profile to write: with the bead, the layer height and the parameters of the wanted bead, or with the values that records show.
+    #[arg(long, requires = "goal", value_name = "FILE.toml")]
     to: Option<PathBuf>,
     #[command(flatten)]
     layering: LayeringArguments,
@@ -283,14 +294,29 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
 }
 
 fn fit(arguments: &Fit) -> anyhow::Result<()> {
-    let text = read(&arguments.data)?;
+    let Some(data) = &arguments.data else {
+        anyhow::ensure!(
+            arguments.want.is_none(),
+            "--want needs the sheet of measured beads: records alone hold no sizes."
+        );
+        let profile = arguments.profile.as_deref();
+        return crate::learn::run(&crate::learn::Wanted {
+            records: &arguments.from,
+            profile: profile.context("name the profile with which the recorded parts were planned (-p).")?,
+            to: arguments.to.as_deref(),
+            page: &arguments.page,
+            json: arguments.json,
+        });
+    };
+    anyhow::ensure!(arguments.to.is_none() || arguments.want.is_some(), "--to needs --want where beads are fitted.");
+    let text = crate::learn::into_sheet(&read(data)?, &arguments.from)?;
     let columns = Columns {
         inputs: arguments.inputs.clone(),
         width: Some(arguments.width.clone()),
         height: Some(arguments.height.clone()),
     };
-    let measured = Measured::read(&text, &columns).with_context(|| arguments.data.display().to_string())?;
-    let library = BeadLibrary::fit(&measured).with_context(|| arguments.data.display().to_string())?;
+    let measured = Measured::read(&text, &columns).with_context(|| data.display().to_string())?;
+    let library = BeadLibrary::fit(&measured).with_context(|| data.display().to_string())?;
     let recipe = arguments.want.map(|want| wanted(arguments, &library, want)).transpose()?;
     let profile = recipe.as_ref().map(|recipe| with_recipe(arguments, &library, recipe)).transpose()?;
     write_file(&arguments.output, library.to_toml().as_bytes())?;
@@ -435,11 +461,12 @@ fn with_recipe(arguments: &Fit, library: &BeadLibrary, recipe: &Recipe) -> anyho
     let process = library.inputs.iter().zip(&recipe.values).filter(|(input, _)| keys.contains(&input.name.as_str()));
     let process = process.map(|(input, value)| (format!("process.{}", input.name), *value));
     let lengths = lengths.into_iter().map(|(key, value)| (key.to_owned(), value));
-    let mut text = profile::text(&arguments.profile)?;
+    let name = arguments.profile.as_deref().unwrap_or(profile::USUAL);
+    let mut text = profile::text(name)?;
     for (key, value) in process.chain(lengths) {
         text = edit::with_value(&text, &key, &format!("{value:.3}"))?;
     }
-    profile::parse(&text, &profile::folder(&arguments.profile)).context("the profile with the wanted bead")?;
+    profile::parse(&text, &profile::folder(name)).context("the profile with the wanted bead")?;
     Ok(text)
 }
 

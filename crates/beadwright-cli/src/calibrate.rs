@@ -1,7 +1,9 @@
 //! `beadwright calibrate`: tool, base, axes of a positioner and scanner from measured points.
 
-use crate::{file, say};
+use crate::{file, reach, say};
 use anyhow::Context;
+use beadwright::files::write_file;
+use beadwright::profile::edit;
 use beadwright::robot::calibrate::{self, AtAngle, Calibrated, Flange, Pair, Residuals, Touch};
 use glam::{DMat3, DQuat, DVec3, EulerRot};
 use std::io::Write;
@@ -17,10 +19,10 @@ pub(crate) struct Arguments {
 enum What {
     /// The tip of the wire on the flange: it touches one fixed point in four poses or more. Columns x, y, z and the angles of the flange,
     /// as the robot shows them without a tool.
-    Tool(Posed),
+    Tool(Kept),
     /// The frame of the part: columns touch, x, y, z. A touch is origin, x (on the x axis), top (or xy), front (where y is 0) or left
     /// (where x is 0).
-    Base(Posed),
+    Base(Kept),
     /// The line about which an axis of a positioner turns: one point of the plate at three angles or more. Columns angle (°), x, y, z.
     Axis(Points),
     /// The frame of a scanner: targets that it and the robot know. Columns sx, sy, sz (scanner), x, y, z (robot).
@@ -44,6 +46,15 @@ struct Posed {
     /// rotation vector in rad).
     #[arg(long, value_enum, default_value_t = Robot::Kuka)]
     robot: Robot,
+}
+
+#[derive(clap::Args)]
+struct Kept {
+    #[command(flatten)]
+    posed: Posed,
+    /// Cell to change: the tip goes into torch.position, the frame of the part into part.position and part.rotation.
+    #[arg(long, value_name = "CELL.toml")]
+    write: Option<PathBuf>,
 }
 
 /// How a robot writes orientations.
@@ -98,14 +109,14 @@ impl Robot {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.what {
-        What::Tool(posed) => tool(posed),
-        What::Base(posed) => base(posed),
+        What::Tool(kept) => tool(&kept.posed, kept.write.as_deref()),
+        What::Base(kept) => base(&kept.posed, kept.write.as_deref()),
         What::Axis(points) => axis(points),
         What::Scanner(posed) => scanner(posed),
     }
 }
 
-fn tool(Posed { points, robot }: &Posed) -> anyhow::Result<()> {
+fn tool(Posed { points, robot }: &Posed, cell: Option<&Path>) -> anyhow::Result<()> {
     let table = Table::read(&points.points)?;
     let columns: Vec<&str> = ["x", "y", "z"].iter().chain(robot.columns()).copied().collect();
     let poses: Vec<Flange> = table
@@ -114,6 +125,7 @@ fn tool(Posed { points, robot }: &Posed) -> anyhow::Result<()> {
         .map(|row| Flange { at: DVec3::from_slice(row), turn: robot.turn(&row[3..]) })
         .collect();
     let found = calibrate::tool(&poses).with_context(|| table.name.clone())?;
+    write(cell, &[("torch.position", array(found.tip))])?;
     let value = serde_json::json!({ "tip": found.tip.to_array(), "tip_within": finite(found.within),
         "touched": found.touched.to_array(), "residuals": residuals(&found.residuals) });
     let words = |out: &mut dyn Write| -> std::io::Result<()> {
@@ -123,7 +135,7 @@ fn tool(Posed { points, robot }: &Posed) -> anyhow::Result<()> {
     say_it(points.json, &value, &found.residuals, "touch", words)
 }
 
-fn base(Posed { points, robot }: &Posed) -> anyhow::Result<()> {
+fn base(Posed { points, robot }: &Posed, cell: Option<&Path>) -> anyhow::Result<()> {
     let table = Table::read(&points.points)?;
     let names = table.words("touch")?;
     let rows = table.rows(&["x", "y", "z"])?;
@@ -135,6 +147,16 @@ fn base(Posed { points, robot }: &Posed) -> anyhow::Result<()> {
     });
     let touches = touches.collect::<anyhow::Result<Vec<_>>>()?;
     let found = calibrate::base(&touches).with_context(|| table.name.clone())?;
+    let (place, z) = (found.place, found.place.turn * DVec3::Z);
+    let leans = z.angle_between(DVec3::Z).to_degrees();
+    anyhow::ensure!(
+        cell.is_none() || leans < UPRIGHT,
+        "{}: the frame leans by {leans:.1}°, and the part of a cell stands upright. Set the table level, or leave --write out.",
+        table.name
+    );
+    let (about_z, ..) = place.turn.to_euler(EulerRot::ZYX);
+    let rotation = format!("{:.3}", about_z.to_degrees() + 0.0);
+    write(cell, &[("part.position", array(place.at)), ("part.rotation", rotation)])?;
     placed(points.json, &found, *robot, "frame of the part", "touch")
 }
 
@@ -209,6 +231,22 @@ fn say_it(
         writeln!(out, "{} {} lies far from the others: measure it again.", capital(point), at + 1)?;
     }
     Ok(())
+}
+
+/// A frame that leans by less, °, counts as upright.
+const UPRIGHT: f64 = 1.0;
+
+/// Changes values of a cell, if one is given; its comments are kept.
+fn write(cell: Option<&Path>, values: &[(&str, String)]) -> anyhow::Result<()> {
+    let Some(path) = cell else { return Ok(()) };
+    let text = values.iter().try_fold(file::text(path)?, |text, (key, value)| edit::with_value(&text, key, value));
+    let text = text.with_context(|| path.display().to_string())?;
+    reach::parse_cell(path, &text)?;
+    Ok(write_file(path, text.as_bytes())?)
+}
+
+fn array(v: DVec3) -> String {
+    format!("[{}]", shown(v, 3))
 }
 
 /// A point is suspicious from this many times the mean distance, and this many mm.

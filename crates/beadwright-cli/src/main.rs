@@ -21,6 +21,9 @@ mod file;
 mod guide;
 mod heat;
 mod inspect;
+mod learn;
+#[cfg(feature = "listen")]
+mod listen;
 mod memory;
 mod model;
 mod onto;
@@ -110,6 +113,9 @@ enum Command {
     /// Join a plan with the logs of its build: what was welded pass by pass, what is doubtful and where, with hashes that show later
     /// changes.
     Record(record::Arguments),
+    /// Write what a cell publishes over MQTT and OPC UA to logs for `record`; it only reads.
+    #[cfg(feature = "listen")]
+    Listen(listen::Arguments),
     /// Reproduce the papers' experiments: our results next to theirs.
     Reproduce(reproduce::Arguments),
     /// Write a plan for other programs: tables, lines for ParaView, toolpaths in 3MF, the shape as built, drawings of layers.
@@ -154,6 +160,8 @@ fn main() -> ExitCode {
         Command::Heat(arguments) => heat::run(&arguments),
         Command::Distort(arguments) => distort::run(&arguments),
         Command::Record(arguments) => record::run(&arguments),
+        #[cfg(feature = "listen")]
+        Command::Listen(arguments) => listen::run(&arguments),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),

@@ -226,9 +226,13 @@ pub(crate) fn load_cell(name: &str) -> anyhow::Result<Cell> {
     if !is_file {
         return Ok(Cell::built_in(name)?);
     }
-    let text = file::text(path)?;
+    parse_cell(path, &file::text(path)?)
+}
+
+/// The cell in the text of a file, which may name another one beside it.
+pub(crate) fn parse_cell(path: &Path, text: &str) -> anyhow::Result<Cell> {
     let beside = |urdf: &str| file::text(&path.with_file_name(urdf)).map_err(|e| format!("{e:#}"));
-    Cell::parse_with(&text, beside).with_context(|| name.to_owned())
+    Cell::parse_with(text, beside).with_context(|| path.display().to_string())
 }
 
 fn parse_trajectory(text: &str) -> Result<PathBuf, String> {

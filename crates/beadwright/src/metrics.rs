@@ -3,7 +3,7 @@
 use crate::bead::wire_area;
 use crate::chart::Chart;
 use crate::layer::Layer;
-use crate::process::Cost;
+use crate::process::{Cost, Spent};
 use crate::profile::{LayersSection, Profile};
 use crate::program::Programmer;
 use crate::slice::Half;
@@ -37,6 +37,10 @@ pub struct Metrics {
     pub gas_m3: f64,
     /// Cost by the prices of `[cost]`; `None` where it has none.
     pub cost: Option<f64>,
+    /// Emissions by the factors of `[cost]`, kg CO₂e; `None` where it has none.
+    pub co2_kg: Option<f64>,
+    /// Energy from the mains, kWh, by the current and voltage of the profile; `None` where it gives none.
+    pub energy_kwh: Option<f64>,
     /// Its currency.
     pub currency: String,
     /// The shortest time that the torch moves with the arc on in one pass, s; `None` without passes.
@@ -80,6 +84,8 @@ struct Rates {
     /// m³/s.
     gas: f64,
     gas_idle: f64,
+    /// Power of the arc, kW.
+    arc: Option<f64>,
     cost: Cost,
     /// How layers lie in space, where their thickness varies.
     layers: Option<LayersSection>,
@@ -96,6 +102,7 @@ impl Metrics {
             gas: process.gas_flow / 60_000.0,
             // It flows before and after every pass.
             gas_idle: process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow,
+            arc: process.current.zip(process.voltage).map(|(current, voltage)| current * voltage / 1000.0),
             cost: profile.cost.clone(),
             layers: profile.layers.charts().any(Chart::has_wedges).then(|| profile.layers.clone()),
         };
@@ -112,6 +119,8 @@ impl Metrics {
             wire_mass_kg: 0.0,
             gas_m3: 0.0,
             cost: None,
+            co2_kg: None,
+            energy_kwh: None,
             currency: profile.cost.currency.clone(),
             shortest_arc_s: None,
             start_stop_time_s: 0.0,
@@ -181,7 +190,17 @@ impl Metrics {
             self.gas_m3 += (welded.moving + welded.crater + idle) * self.rates.gas;
         }
         self.total_time_s += self.turns.waits(layer);
-        self.cost = self.rates.cost.of(self.total_time_s / 3600.0, self.wire_mass_kg, self.gas_m3);
+        let (spent, rates) = (self.spent(), &self.rates.cost);
+        (self.cost, self.co2_kg, self.energy_kwh) = (rates.of(&spent), rates.co2_kg(&spent), rates.mains_kwh(&spent));
+    }
+
+    fn spent(&self) -> Spent {
+        Spent {
+            hours: self.total_time_s / 3600.0,
+            wire_kg: self.wire_mass_kg,
+            gas_m3: self.gas_m3,
+            arc_kwh: self.rates.arc.map(|power| power * self.arc_time_s / 3600.0),
+        }
     }
 
     /// Volume that a layer adds, mm³; the upper layer of a pair fills what the lower one leaves.

@@ -29,6 +29,8 @@ pub enum Kind {
     NotLogged,
     /// A log has no rows for some time.
     Gap,
+    /// A log lost the connection to what it logs.
+    Interrupted,
     /// The clock of a log was set.
     ClockSet,
     /// The clock of a log runs slow or fast.
@@ -54,6 +56,7 @@ impl Kind {
             Self::Stop => "stop",
             Self::NotLogged => "not logged",
             Self::Gap => "rows missing",
+            Self::Interrupted => "interrupted",
             Self::ClockSet => "clock set",
             Self::ClockDrift => "clock drift",
             Self::ClockUnknown => "clock unknown",

@@ -9,7 +9,7 @@ use crate::planned::{self, PlannedPass};
 use crate::quantity::Quantity;
 use crate::record::{Log, PassRow, Record};
 use crate::settings::Settings;
-use crate::source::Source;
+use crate::source::{Event, Source, What};
 use crate::welded::{Welded, Welding};
 
 /// Joins a plan with the logs of its build.
@@ -116,7 +116,8 @@ fn row(
 /// Puts each note of an operator to the pass during or before which it was written.
 fn notes(record: &mut Record, welded: &[Welded], logs: &[Aligned<'_>]) {
     for log in logs {
-        for (row, event) in log.source.events.iter().filter(|(_, event)| !event.note.is_empty()) {
+        let noted = |event: &Event| !event.note.is_empty() && event.what != What::Interrupted;
+        for (row, event) in log.source.events.iter().filter(|(_, event)| noted(event)) {
             let time = log.time(*row);
             let pass =
                 welded.iter().filter(|welded| welded.span.end >= time).min_by(|a, b| a.span.end.total_cmp(&b.span.end));

@@ -273,6 +273,10 @@ fn of_log(log: &Log, reference: &str, moment: &dyn Fn(f64) -> String) -> Vec<Fin
             format!("{name}: rows of {:.1} s are missing from {} on.", to - from, moment(from)),
         );
     }
+    for (at, note) in &log.interruptions {
+        let note = if note.is_empty() { "The connection was lost." } else { note };
+        say(Kind::Interrupted, Some([*at, *at]), format!("{name}: interrupted at {}. {note}", moment(*at)));
+    }
     for &[at, step] in &log.set {
         let (way, step) = (if step < 0.0 { "back" } else { "forward" }, step.abs());
         say(

@@ -5,7 +5,7 @@ use crate::clock::Trust;
 use crate::figures::Measured;
 use crate::finding::Finding;
 use crate::quantity::Quantity;
-use crate::source::{Tally, longest_step};
+use crate::source::{Tally, What, longest_step};
 
 /// The record of a part.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +92,8 @@ pub struct Log {
     pub set: Vec<[f64; 2]>,
     /// Stretches without rows, s by the reference.
     pub gaps: Vec<[f64; 2]>,
+    /// When it lost the connection to what it logs, s by the reference, and why.
+    pub interruptions: Vec<(f64, String)>,
 }
 
 impl Log {
@@ -103,6 +105,7 @@ impl Log {
         let silent = log.arcs.as_ref().is_some_and(|arcs| arcs.only_burning);
         let gaps = source.runs.iter().skip(1).map(|row| gap((row - 1, *row)));
         let longest = longest_step(source);
+        let lost = source.events.iter().filter(|(_, event)| event.what == What::Interrupted);
         Self {
             name: source.name.clone(),
             tally: source.tally,
@@ -116,6 +119,7 @@ impl Log {
             within: clock.within,
             set: set.collect(),
             gaps: if silent { Vec::new() } else { gaps.filter(|gap| gap[1] - gap[0] > longest).collect() },
+            interruptions: lost.map(|(row, event)| (log.time(*row), event.note.clone())).collect(),
         }
     }
 }

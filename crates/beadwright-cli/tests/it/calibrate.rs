@@ -1,5 +1,6 @@
 //! A cell calibrated from tables of measured points.
 
+use beadwright::robot::Cell;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -77,4 +78,30 @@ fn faults_of_a_table_are_named_with_line_and_column() {
     assert!(error.contains("\"corner\" is no touch"), "{error}");
     let error = fails("d.csv", "angle,x,y,z\n0,1,2,3\n", "axis");
     assert!(error.contains("1 angles are too few"), "{error}");
+}
+
+#[test]
+fn a_cell_takes_what_was_measured_and_keeps_its_comments() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let cell = concat!(env!("CARGO_MANIFEST_DIR"), "/../robot/cells/kuka-kr20-r1810.toml");
+    let before = fs::read_to_string(cell).unwrap();
+    fs::write(at.join("mine.toml"), &before).unwrap();
+    let touches = "x,y,z,a,b,c\n950,0,500,0,0,180\n1000,-50,500,90,0,180\n700,0,150,0,-90,180\n950,-300,200,0,0,-90\n";
+    fs::write(at.join("touches.csv"), touches).unwrap();
+    fs::write(at.join("base.csv"), "touch,x,y,z\norigin,900,100,400\nx,900,300,400\ntop,850,150,400\n").unwrap();
+    json(at, &["tool", "touches.csv", "--write", "mine.toml"]);
+    json(at, &["base", "base.csv", "--write", "mine.toml"]);
+    let after = fs::read_to_string(at.join("mine.toml")).unwrap();
+    let cell = Cell::parse(&after).unwrap();
+    near(&serde_json::json!(cell.torch.position), &[50.0, 0.0, 300.0], 1e-3);
+    near(&serde_json::json!(cell.part.position), &[900.0, 100.0, 400.0], 1e-3);
+    assert!((cell.part.rotation - 90.0).abs() < 1e-3, "{}", cell.part.rotation);
+    assert_eq!(after.matches('#').count(), before.matches('#').count(), "comments are kept");
+    // A table that leans is no place for a part.
+    fs::write(at.join("base.csv"), "touch,x,y,z\norigin,900,100,400\nx,900,300,420\ntop,850,150,400\n").unwrap();
+    let refused = run(at, &["calibrate", "base", "base.csv", "--write", "mine.toml"]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(!refused.status.success() && said.contains("the frame leans by 8.0°"), "{said}");
+    assert_eq!(fs::read_to_string(at.join("mine.toml")).unwrap(), after);
 }

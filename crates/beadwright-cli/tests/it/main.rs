@@ -16,6 +16,9 @@ mod folder;
 mod guide;
 mod heat;
 mod height;
+mod learn;
+#[cfg(feature = "listen")]
+mod listen;
 mod opened_elsewhere;
 mod own_dialect;
 mod preform;

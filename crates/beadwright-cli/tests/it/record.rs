@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 /// When the arc burns in each pass of a plan, s: while the torch moves, as its exported table says, and so long before and after.
-fn times(at: &Path, [before, after]: [f64; 2]) -> Vec<[f64; 2]> {
+pub(crate) fn times(at: &Path, [before, after]: [f64; 2]) -> Vec<[f64; 2]> {
     ok(at, &["export", "out/plan.json", "-o", "beads.csv"]);
     let table = fs::read_to_string(at.join("beads.csv")).unwrap();
     let mut lines = table.lines();
@@ -68,6 +68,10 @@ fn a_record_is_written_verified_and_opened_elsewhere() {
             "--set",
             "cost.hour=60",
             "--set",
+            "cost.co2_wire_kg=5",
+            "--set",
+            "cost.co2_kwh=0.4",
+            "--set",
             "process.current=150",
             "--set",
             "process.voltage=18.5",
@@ -98,6 +102,12 @@ fn a_record_is_written_verified_and_opened_elsewhere() {
     };
     near(&record["recorded"]["arc_hours"], &record["planned"]["arc_hours"], 0.02);
     near(&record["recorded"]["cost"], &record["planned"]["cost"], 0.1);
+    // 150 A × 18.5 V for the time of the arc, by what the log measured.
+    let kwh = 2.775 * record["recorded"]["arc_hours"].as_f64().unwrap();
+    near(&record["recorded"]["energy_kwh"], &kwh.into(), 1e-3);
+    let co2 = 5.0 * record["recorded"]["wire_kg"].as_f64().unwrap() + 0.4 * kwh;
+    near(&record["recorded"]["co2_kg"], &co2.into(), 1e-3);
+    near(&record["recorded"]["co2_kg"], &record["planned"]["co2_kg"], 0.1);
 
     let whole = ok(at, &["record", "--verify", "record", "--seal", seal, "--source", "power.csv"]);
     assert!(whole.contains("the record is whole"), "{whole}");

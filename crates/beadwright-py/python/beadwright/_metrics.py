@@ -32,6 +32,10 @@ class Metrics(dict[str, Any]):
     """Shielding gas, m³."""
     cost: float | None
     """Cost by the prices of ``[cost]``, in :attr:`currency`; ``None`` where the profile has no prices."""
+    co2_kg: float | None
+    """Emissions by the factors of ``[cost]``, kg CO₂e; ``None`` where the profile has no factors."""
+    energy_kwh: float | None
+    """Energy from the mains, kWh; ``None`` where the profile gives no current and voltage."""
     currency: str
     """Currency of the cost."""
     shortest_arc_s: float | None

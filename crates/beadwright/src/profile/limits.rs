@@ -94,6 +94,13 @@ fn contradiction(p: &Profile) -> Option<Broken> {
             return Some(Broken { key, value, reason: format!("{other} is not below it.") });
         }
     }
+    let factors = [("cost.energy_kwh", p.cost.energy_kwh), ("cost.co2_kwh", p.cost.co2_kwh)];
+    if let Some((key, value)) = factors.into_iter().find(|(_, value)| *value > 0.0)
+        && p.heat_input().is_none()
+    {
+        let reason = "energy is known only with process.current and process.voltage: give both.".to_owned();
+        return Some(Broken { key: key.to_owned(), value: value.to_string(), reason });
+    }
     if let (Some(spot), Some(_)) = (&p.spot, &p.weave) {
         let reason = "the torch stands still for a dot, so [spot] cannot be combined with [weave].".to_owned();
         return Some(Broken { key: "spot.time".to_owned(), value: spot.time.to_string(), reason });

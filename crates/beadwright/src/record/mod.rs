@@ -9,7 +9,9 @@
 //! | `page` | `record.html` |
 //! | `table` (feature `parquet`) | `record.parquet`, a row for each pass |
 //! | `sealed` | `record.json` with its chain of hashes, and whether it still holds |
+//! | `learnt` | what records say about the values of a profile |
 
+mod learnt;
 mod page;
 mod planned;
 mod sealed;
@@ -18,6 +20,7 @@ mod table;
 mod totals;
 
 pub use bead_record::*;
+pub use learnt::{AsWelded, Estimate, Learnt, Lesson, as_welded};
 pub use planned::{planned, settings};
 pub use sealed::{Broken, Sealed, other_inputs, verify};
 pub use totals::Totals;

@@ -166,6 +166,12 @@ fn totals(sheet: &mut Sheet, part: &Part<'_>) {
     if planned.cost.is_some() {
         rows.push(row(&format!("cost {currency}"), &|totals| totals.cost.map(|cost| fixed(cost, 2))));
     }
+    if planned.energy_kwh.is_some() || recorded.energy_kwh.is_some() {
+        rows.push(row("energy kWh", &|totals| totals.energy_kwh.map(|kwh| fixed(kwh, 2))));
+    }
+    if planned.co2_kg.is_some() {
+        rows.push(row("CO₂e kg", &|totals| totals.co2_kg.map(|kg| fixed(kg, 2))));
+    }
     sheet.heading("In all").table(&["", "planned", "recorded"], &rows);
 }
 

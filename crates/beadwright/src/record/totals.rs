@@ -1,8 +1,9 @@
-//! Hours, wire, gas and cost of a part, planned and recorded.
+//! Hours, wire, gas, energy, cost and CO₂e of a part, planned and recorded.
 
 use super::{Part, Quantity};
 use crate::bead::wire_area;
 use crate::metrics::Metrics;
+use crate::process::Spent;
 use serde::Serialize;
 
 /// Totals of a part.
@@ -18,6 +19,10 @@ pub struct Totals {
     pub gas_m3: f64,
     /// Cost by the prices of the profile; `None` without prices.
     pub cost: Option<f64>,
+    /// Energy from the mains, kWh; `None` where the current or voltage of a welded pass was not measured or planned.
+    pub energy_kwh: Option<f64>,
+    /// Emissions by the factors of the profile, kg CO₂e; `None` without factors.
+    pub co2_kg: Option<f64>,
 }
 
 impl Totals {
@@ -31,6 +36,8 @@ impl Totals {
             wire_kg: Some(metrics.wire_mass_kg),
             gas_m3: metrics.gas_m3,
             cost: metrics.cost,
+            energy_kwh: metrics.energy_kwh,
+            co2_kg: metrics.co2_kg,
         }
     }
 
@@ -48,7 +55,20 @@ impl Totals {
         let arcs: usize = passes().map(|row| row.arcs).sum();
         let idle = process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow;
         let gas_m3 = (burned + arcs as f64 * idle) * process.gas_flow / 60_000.0;
-        let cost = wire_kg.and_then(|wire_kg| part.profile.cost.of(hours, wire_kg, gas_m3));
-        Self { arc_hours: burned / 3600.0, hours, wire_kg, gas_m3, cost }
+        let joules = |row: &super::PassRow| {
+            let mean = |quantity| row.measured(quantity).map(|measured| measured.mean);
+            Some(mean(Quantity::Current)? * mean(Quantity::Voltage)? * row.burned)
+        };
+        let arc_kwh = passes().map(joules).sum::<Option<f64>>().map(|joules| joules / 3.6e6);
+        let (factors, spent) = (&part.profile.cost, wire_kg.map(|wire_kg| Spent { hours, wire_kg, gas_m3, arc_kwh }));
+        Self {
+            arc_hours: burned / 3600.0,
+            hours,
+            wire_kg,
+            gas_m3,
+            cost: spent.and_then(|spent| factors.of(&spent)),
+            energy_kwh: factors.mains_kwh(&Spent { hours, arc_kwh, ..Spent::default() }),
+            co2_kg: spent.and_then(|spent| factors.co2_kg(&spent)),
+        }
     }
 }

@@ -26,6 +26,7 @@ pub fn totals(m: &Metrics) -> Vec<(&'static str, String)> {
         rows.insert(5, ("waits", hours(m.dwell_time_s)));
     }
     rows.extend(m.cost.map(|cost| ("cost", format!("{cost:.2} {}", m.currency))));
+    rows.extend(m.co2_kg.map(|kg| ("CO₂e", format!("{kg:.2} kg"))));
     rows.extend(m.heat_input_j_per_mm.map(|heat| ("heat input", format!("{heat:.0} J/mm"))));
     rows
 }

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Modules of the crates below the command, from the top of the table to its bottom; those in one row do not know each other.
-/// Between crates Cargo keeps the arrows: `planar`, `part`, `plan`, `program`, `robot`, `distort`, `record`, `beadwright`, `papers`.
+/// Between crates Cargo keeps the arrows: `planar`, `part`, `plan`, `program`, `robot`, `distort`, `record`, `listen`,
+/// `beadwright`, `papers`.
 const CRATES: &[(&str, &[&[&str]])] = &[
     (
         "part",
@@ -85,6 +86,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["join"],
         ],
     ),
+    ("listen", &[&["error", "watch"], &["source"], &["log", "payload"], &["hearing"], &["mqtt", "opcua"]]),
     (
         "beadwright",
         &[

@@ -7,7 +7,7 @@ mod start_stop;
 mod torch_shape;
 
 pub use by_layer::LayerProcess;
-pub use cost::Cost;
+pub use cost::{Cost, Spent};
 pub use spot::{Dot, Spot};
 pub use start_stop::StartStop;
 pub use torch_shape::TorchShape;

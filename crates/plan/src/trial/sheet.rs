@@ -1,6 +1,6 @@
 //! The sheet that is filled in at the bench, as CSV that `bead fit` and `bead walls` read as it is.
 
-use super::{BeadSize, Factor, Placed, Shape};
+use super::{BeadSize, Factor, Parameter, Placed, Shape};
 use crate::bead::library::{LibraryError, fields};
 use bead_part::text::table::separator;
 
@@ -46,12 +46,55 @@ fn joined(cells: Vec<String>) -> String {
 /// # Errors
 /// [`SheetError`] if the text is no sheet of trials, or has another number of trials on that plate.
 pub fn filled(sheet: &str, plate: usize, sizes: &[Option<BeadSize>]) -> Result<String, SheetError> {
+    let size = |size: &Option<BeadSize>| {
+        let cells = |size: BeadSize| vec![("width_mm", size.width), ("height_mm", size.height)];
+        size.map(cells).unwrap_or_default()
+    };
+    with_cells(sheet, plate, &sizes.iter().map(size).collect::<Vec<_>>())
+}
+
+/// How a trial was welded, where that was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TrialWelded {
+    /// Wire feed speed, m/min.
+    pub feed: Option<f64>,
+    /// Speed of the torch, mm/s.
+    pub speed: Option<f64>,
+    /// Current, A.
+    pub current: Option<f64>,
+    /// Voltage, V.
+    pub voltage: Option<f64>,
+}
+
+/// The sheet with the feeds and speeds that were measured in place of those that were set, for the trials of plate `plate` (from 1) in the
+/// order of welding. What was not measured, or not varied, stays.
+///
+/// # Errors
+/// [`SheetError`] as [`filled`].
+pub fn as_measured(sheet: &str, plate: usize, trials: &[TrialWelded]) -> Result<String, SheetError> {
+    let cells = |welded: &TrialWelded| {
+        let known = [
+            (Parameter::WireFeedSpeed.column(), welded.feed),
+            (Parameter::DepositionSpeed.column(), welded.speed),
+            ("measured_current_a", welded.current),
+            ("measured_voltage_v", welded.voltage),
+        ];
+        known.into_iter().filter_map(|(column, value)| Some((column, value?))).collect()
+    };
+    with_cells(sheet, plate, &trials.iter().map(cells).collect::<Vec<_>>())
+}
+
+/// The sheet with other numbers in some columns of the trials of a plate; columns that it lacks are left out.
+fn with_cells(sheet: &str, plate: usize, trials: &[Vec<(&'static str, f64)>]) -> Result<String, SheetError> {
     let mut lines = sheet.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
     let (at, head) = lines.next().ok_or(SheetError::Column("plate"))?;
     let between = separator(head);
     let columns = fields(head, between, at + 1)?;
-    let column = |name: &'static str| columns.iter().position(|own| own == name).ok_or(SheetError::Column(name));
-    let [plates, width, height] = [column("plate")?, column("width_mm")?, column("height_mm")?];
+    let column = |name: &str| columns.iter().position(|own| own == name);
+    let missing = ["plate", "width_mm", "height_mm"].into_iter().find(|name| column(name).is_none());
+    let (None, Some(plates)) = (missing, column("plate")) else {
+        return Err(SheetError::Column(missing.unwrap_or("plate")));
+    };
     let mut rows = Vec::new();
     for (number, line) in lines {
         let cells = fields(line, between, number + 1)?;
@@ -59,20 +102,21 @@ pub fn filled(sheet: &str, plate: usize, sizes: &[Option<BeadSize>]) -> Result<S
             rows.push((number, cells));
         }
     }
-    if rows.len() != sizes.len() {
-        return Err(SheetError::Count { plate, sheet: rows.len(), plan: sizes.len() });
+    if rows.len() != trials.len() {
+        return Err(SheetError::Count { plate, sheet: rows.len(), plan: trials.len() });
     }
     let mut text: Vec<String> = sheet.lines().map(str::to_owned).collect();
-    for ((number, mut cells), size) in rows.into_iter().zip(sizes).filter_map(|(row, size)| Some((row, (*size)?))) {
+    let decimal = |value: f64| {
+        let text = format!("{value:.2}");
+        if between == ',' { text } else { text.replace('.', ",") }
+    };
+    let quoted = |cell: &String| {
+        if cell.contains([between, '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.clone() }
+    };
+    for ((number, mut cells), changed) in rows.into_iter().zip(trials).filter(|(_, changed)| !changed.is_empty()) {
         cells.resize(columns.len().max(cells.len()), String::new());
-        let decimal = |value: f64| {
-            let text = format!("{value:.2}");
-            if between == ',' { text } else { text.replace('.', ",") }
-        };
-        (cells[width], cells[height]) = (decimal(size.width), decimal(size.height));
-        let quoted = |cell: &String| {
-            if cell.contains([between, '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.clone() }
-        };
+        let placed = changed.iter().filter_map(|(name, value)| Some((column(name)?, *value)));
+        placed.for_each(|(place, value)| cells[place] = decimal(value));
         text[number] = cells.iter().map(quoted).collect::<Vec<_>>().join(&between.to_string());
     }
     Ok(text.join("\n") + "\n")

@@ -42,6 +42,8 @@ pub enum What {
     PassStart,
     /// It ended one.
     PassEnd,
+    /// The log lost the connection to what it logs; the note says why.
+    Interrupted,
     /// Anything else, in the words of the log.
     Other(String),
 }
@@ -53,6 +55,7 @@ impl What {
             "arc_off" | "arc_end" => Self::ArcOff,
             "pass_start" | "pass_begin" => Self::PassStart,
             "pass_end" => Self::PassEnd,
+            "interrupted" => Self::Interrupted,
             _ => Self::Other(word.to_owned()),
         }
     }

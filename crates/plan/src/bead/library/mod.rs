@@ -31,6 +31,7 @@ pub(crate) use measured::fields;
 pub use measured::{Columns, Measured};
 pub use printed::{PrintedRow, median, printed_rows};
 pub use solve::{Layering, Limit, PREFERRED_RATIOS, Recipe, Wish};
+pub use student::t_95;
 
 use super::Bead;
 use serde::{Deserialize, Serialize};

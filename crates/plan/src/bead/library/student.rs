@@ -1,11 +1,11 @@
-//! Student's t for prediction intervals.
+//! Student's t for intervals.
 
 use std::f64::consts::FRAC_PI_2;
 
 /// The t that a Student variable with `degrees` degrees of freedom exceeds in absolute value with a probability of 5 %.
 /// Found by bisection on the finite sums of Abramowitz & Stegun 26.7.3 and 26.7.4; error below 1e-9. Above 1000
 /// degrees, the value for 1000 (1.962) is used.
-pub(super) fn t_95(degrees: usize) -> f64 {
+pub fn t_95(degrees: usize) -> f64 {
     let degrees = degrees.clamp(1, 1000);
     let (mut low, mut high) = (0.0, 20.0);
     while high - low > 1e-10 {

@@ -1,0 +1,154 @@
+//! `beadwright bead fit --from`: records of a cell that differs from its profile in known ways bring the profile to the truth.
+
+use crate::common::{ok, refused};
+use crate::record::times;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+/// The cell feeds 4 % less wire than it is told, with 158 A instead of 150 A; its voltage is that of the profile.
+const FED: f64 = 0.96;
+const CURRENT: f64 = 158.0;
+
+/// A number from −1 to 1 that looks random.
+fn noise(row: usize) -> f64 {
+    (row as f64 * 12.9898).sin()
+}
+
+/// The log of such a cell, 10 rows a second; before each pass the metal has the temperature that is given.
+fn log(passes: &[[f64; 2]], feed: f64, temperatures: &[f64]) -> String {
+    let mut text = "time_s,wire_feed_speed_m_min,current_a,voltage_v,temperature_c\n".to_owned();
+    for row in 0..((passes[passes.len() - 1][1] + 10.0) * 10.0) as usize {
+        let time = row as f64 / 10.0;
+        let next = passes.partition_point(|[_, end]| *end <= time);
+        let burns = passes.get(next).is_some_and(|[start, _]| time >= *start);
+        let on = f64::from(u8::from(burns));
+        let warm = temperatures.get(next).copied().unwrap_or(25.0);
+        let (fed, current) = (on * feed * FED * (1.0 + 0.01 * noise(row)), on * (CURRENT + 3.0 * noise(row + 7)));
+        writeln!(text, "{time:.1},{fed:.4},{current:.2},{:.2},{warm:.2}", on * 18.5).unwrap();
+    }
+    text
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
+}
+
+#[test]
+fn a_profile_learns_what_its_cell_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    ok(at, &["example", "star", "-o", "star.stl"]);
+    let told = ["--set", "process.current=150", "--set", "process.voltage=18.5"];
+    ok(
+        at,
+        &[&["plan", "star.stl", "-p", "cmt-al2319-kuka", "-s", "contour", "--no-deposit", "-o", "out"], &told[..]]
+            .concat(),
+    );
+    let profile = json(&at.join("out/plan.json"))["profile"].clone();
+    let value = |section: &str, key: &str| profile[section][key].as_f64().unwrap();
+    let feed = value("process", "wire_feed_speed");
+    let passes = times(at, [value("process", "arc_start_delay"), value("start_stop", "crater_fill_time")]);
+    let record = ["record", "out/plan.json", "--source", "power.csv", "--temperatures"];
+    fs::write(at.join("power.csv"), log(&passes, feed, &[])).unwrap();
+    ok(at, &record);
+    // The metal warms by four fifths of what the model says: so much less of the arc's heat reaches it.
+    let ambient = value("heat", "ambient");
+    let planned = |row: &serde_json::Value| row["pass"]["before"][0].as_f64().unwrap();
+    let rows = json(&at.join("record/record.json"));
+    let warm = rows["passes"].as_array().unwrap().iter().map(|row| ambient + 0.8 * (planned(row) - ambient));
+    fs::write(at.join("power.csv"), log(&passes, feed, &warm.collect::<Vec<_>>())).unwrap();
+    ok(at, &record);
+
+    let fit = ["bead", "fit", "--from", "record", "-p", "cmt-al2319-kuka", "--to", "mine.toml", "--json"];
+    let learnt: serde_json::Value = serde_json::from_str(&ok(at, &fit)).unwrap();
+    let lesson = |key: &str| {
+        let lessons = learnt["lessons"].as_array().unwrap();
+        let lesson = lessons.iter().find(|lesson| lesson["key"] == key).unwrap_or_else(|| panic!("{key}: {learnt}"));
+        let number = |of: &str| lesson["after"][of].as_f64().unwrap();
+        (number("value"), number("plus_minus"), lesson["changes"].as_bool().unwrap())
+    };
+    let efficiency = 0.8 * value("heat", "arc_efficiency");
+    for (key, truth, within) in [
+        ("process.wire_feed_speed", FED * feed, 2e-3),
+        ("process.current", CURRENT, 2e-3),
+        ("process.voltage", 18.5, 1e-4),
+        ("heat.arc_efficiency", efficiency, 0.02),
+    ] {
+        let (found, plus_minus, changes) = lesson(key);
+        assert!((found / truth - 1.0).abs() < within, "{key}: {found} instead of {truth}");
+        assert!(plus_minus < 0.02 * truth && changes, "{key} ± {plus_minus}");
+    }
+    ok(at, &["profile", "check", "mine.toml"]);
+    let mine = fs::read_to_string(at.join("mine.toml")).unwrap();
+    assert!(mine.contains(&format!("wire_feed_speed = {:.3}", lesson("process.wire_feed_speed").0)), "{mine}");
+    let page = fs::read_to_string(at.join("learnt.html")).unwrap();
+    assert!(page.contains("process.wire_feed_speed") && page.contains("What could not be learnt"), "{page}");
+    // What holds is not changed: the same records against what was learnt.
+    let again = ok(at, &["bead", "fit", "--from", "record", "-p", "mine.toml"]);
+    assert!(
+        again.contains("process.current")
+            && again.lines().any(|line| line.contains("18.500") && line.ends_with("holds")),
+        "{again}"
+    );
+
+    assert!(refused(at, &["bead", "fit", "--from", "record"], 1).contains("name the profile"));
+    let path = at.join("record/record.json");
+    fs::write(&path, fs::read_to_string(&path).unwrap().replacen("\"mean\":15", "\"mean\":16", 1)).unwrap();
+    let said = refused(at, &fit[..6], 1);
+    assert!(said.contains("nothing is learnt from it") && said.contains("was changed"), "{said}");
+}
+
+#[test]
+fn a_trial_is_fitted_by_what_was_measured_instead_of_what_was_set() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let trial = ["bead", "trial", "-p", "cmt-steel-robots", "--vary", "deposition_speed=5..9", "--repeats", "2"];
+    ok(at, &[&trial[..], &["--plate", "500x400", "-o", "trial"]].concat());
+    let sheet = fs::read_to_string(at.join("trial/sheet.csv")).unwrap();
+    let plates: usize =
+        sheet.lines().skip(3).map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).max().unwrap();
+    // The robot runs at 95 % of the speeds that were set.
+    let mut records = Vec::new();
+    for plate in 1..=plates {
+        let plan = format!("trial/trial_{plate}/plan.json");
+        let plan = if at.join(&plan).exists() { plan } else { "trial/trial/plan.json".to_owned() };
+        ok(at, &["export", &plan, "-o", "beads.csv"]);
+        let table = fs::read_to_string(at.join("beads.csv")).unwrap();
+        let mut log = "time_s,current_a,speed_mm_s\n-5,0,0\n".to_owned();
+        let head: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+        let column =
+            |name: &str| head.iter().position(|own| *own == name).unwrap_or_else(|| panic!("{name}: {head:?}"));
+        let [start, time, speed] = ["start (s)", "time (s)", "speed (mm/s)"].map(column);
+        for line in table.lines().skip(1) {
+            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
+            let (begin, end, speed) = (cells[start], cells[start] + cells[time], 0.95 * cells[speed]);
+            for step in 0..((end - begin) * 10.0) as usize {
+                writeln!(log, "{:.2},140,{speed:.4}", begin + step as f64 / 10.0).unwrap();
+            }
+            writeln!(log, "{end:.2},0,0").unwrap();
+        }
+        fs::write(at.join("log.csv"), log).unwrap();
+        let record = format!("record_{plate}");
+        ok(at, &["record", &plan, "--source", "log.csv", "-o", &record]);
+        records.push(record);
+    }
+    // Beads of 30 mm³/s: their area, and so their size, depends on the true speed.
+    let filled = sheet.lines().map(|line| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if let (Ok(_), Some(Ok(set))) = (cells[0].parse::<usize>(), cells.get(3).map(|cell| cell.parse::<f64>())) {
+            let height = (30.0 / (0.95 * set) / 3.0).sqrt();
+            (cells[4], cells[5]) = (format!("{:.3}", 3.0 * height), format!("{height:.3}"));
+        }
+        cells.join(",") + "\n"
+    });
+    fs::write(at.join("sheet.csv"), filled.collect::<String>()).unwrap();
+    let from: Vec<&str> =
+        ["bead", "fit", "sheet.csv", "--from"].into_iter().chain(records.iter().map(String::as_str)).collect();
+    let said = ok(at, &from);
+    assert!(said.contains("4.75 to 8.55 mm/s"), "{said}");
+    let said = ok(at, &["bead", "predict", "bead-library.toml", "deposition_speed=6", "--json"]);
+    let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+    let truth = 3.0 * (30.0_f64 / 6.0 / 3.0).sqrt();
+    assert!((said["width_mm"]["value"].as_f64().unwrap() / truth - 1.0).abs() < 0.01, "{said} {truth}");
+}
