@@ -46,6 +46,9 @@ impl Studio {
                 }
                 self.view.playing = false;
                 self.view.pin = None;
+                if self.jobs.distortion.as_ref().is_some_and(|distortion| distortion.progress().is_some()) {
+                    self.stop_distortion();
+                }
             }
             Action::Solid => self.view.switch(Mode::Solid),
             Action::Layer => self.view.switch(Mode::Layer),
@@ -122,6 +125,8 @@ impl Studio {
             Action::LookCloser => self.look_closer(),
             Action::Heat => self.begin_heat(),
             Action::Level => self.begin_level(),
+            Action::Distort => self.begin_distortion(),
+            Action::StopDistortion => self.stop_distortion(),
             Action::CloseScan => self.close_scan(),
             Action::TakeCell(name) => {
                 self.view.cell_chosen = true;

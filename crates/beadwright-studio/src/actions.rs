@@ -105,6 +105,10 @@ pub enum Action {
     Heat,
     /// Computes how far layers lean from level.
     Level,
+    /// Computes how plate and part bend.
+    Distort,
+    /// Gives it up.
+    StopDistortion,
     /// Computes what the robot can reach.
     Reach,
     /// Restores the project of a run that crashed.

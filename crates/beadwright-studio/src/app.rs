@@ -62,6 +62,7 @@ impl Studio {
             None => {}
         }
         self.hear_of_scan();
+        self.hear_of_distortion();
         match jobs::take(&mut self.jobs.reach_job) {
             Some(Ok(Ok(reach))) => {
                 self.jobs.reach = Some(reach);

@@ -3,6 +3,7 @@
 
 use crate::actions::Action;
 use crate::compared::Compared;
+use crate::distortion::Distorting;
 use crate::export::Export;
 use crate::form::Parsed;
 use crate::heat::Temperatures;
@@ -17,7 +18,7 @@ use crate::steps::Looked;
 use crate::text::Language;
 use crate::view::{Mode, ViewState};
 use crate::view2d::View2d;
-use crate::view3d::{Pick, Plate, Style, View3d};
+use crate::view3d::{Colour, Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
 use beadwright::chart::Chart;
 use beadwright::fill::StrategyName;
@@ -97,6 +98,8 @@ pub(crate) struct Jobs {
     pub(crate) looked: Looked,
     pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
     pub(crate) level_job: Option<Job<Leans>>,
+    /// How plate and part bend, computed or being computed.
+    pub(crate) distortion: Option<Distorting>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
     /// The cell that the results are for.
@@ -117,7 +120,8 @@ impl Jobs {
             || self.heat_job.is_some()
             || self.level_job.is_some()
             || self.scan_job.is_some()
-            || self.scan_wanted.is_some();
+            || self.scan_wanted.is_some()
+            || self.distortion.as_ref().is_some_and(|distortion| distortion.progress().is_some());
         !computes && !self.looked.is_busy()
     }
 }
@@ -215,14 +219,16 @@ impl<'a> Known<'a> {
     /// What the 3-D view shows.
     pub(crate) fn style(self, view: &ViewState) -> Style {
         let inner = view.scan && self.scan().is_some() || view.stock && self.has_stock();
-        let scan = inner && view.mode == Mode::Solid && !view.laying;
-        let arm = self.arm(view);
+        let bent = self.bent(view).is_some();
+        let scan = inner && view.mode == Mode::Solid && !view.laying && !bent;
+        let arm = self.arm(view).filter(|_| !bent);
         let at_arm = self.torch_place(view).filter(|_| arm.is_some()).map(|place| place.torch);
         let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
         Style {
-            colour: view.colour,
+            colour: if bent { Colour::Movement } else { view.colour },
             mesh: view.mesh || view.laying,
             scan,
+            bent: bent && view.plate,
             travels: view.show.travels && !scan,
             starts: view.show.starts && !scan,
             marks_from: if view.all_marks { 0 } else { view.last },
@@ -231,7 +237,7 @@ impl<'a> Known<'a> {
             layers: view.first..=view.last,
             segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
             section: view.section,
-            plate: self.plate().filter(|_| view.plate),
+            plate: self.plate().filter(|_| view.plate && !bent),
             torch: view.torch.or(at_arm),
             arm: arm.map(|arm| arm.links).unwrap_or_default(),
             highlight: view.chosen.and_then(|chosen| self.pick(chosen)),

@@ -2,6 +2,7 @@
 
 use crate::view2d::Show;
 use crate::view3d::{Colour, Grip, Scene, Section, Stance};
+use beadwright::distortion::Clamps;
 use glam::{DVec2, DVec3};
 
 /// Which view fills the window.
@@ -28,6 +29,19 @@ pub enum Side {
     Plots,
     /// What can be exported.
     Export,
+}
+
+/// How plate and part are shown as they bend.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bend {
+    /// Whether they are shown bent.
+    pub shown: bool,
+    /// Where clamps hold the plate.
+    pub clamps: Clamps,
+    /// Whether they are shown on the clamps, not released.
+    pub clamped: bool,
+    /// How many times as large as computed the movement is drawn; as suits the part while nobody has chosen it.
+    pub times: Option<f64>,
 }
 
 /// The marked place of a finding.
@@ -78,6 +92,8 @@ pub struct ViewState {
     pub parallel: bool,
     /// Whether the plate below the part is shown.
     pub plate: bool,
+    /// How plate and part are shown as they bend.
+    pub bend: Bend,
     /// Whether the robot's arm is shown.
     pub robot: bool,
     /// Whether the next click in 3-D chooses the face on which the part is laid.
@@ -135,6 +151,7 @@ impl Default for ViewState {
             all_marks: false,
             parallel: false,
             plate: true,
+            bend: Bend::default(),
             robot: false,
             laying: false,
             placing: false,
@@ -164,7 +181,7 @@ impl ViewState {
         let (laying, placing, grip) = (false, false, None);
         let (wanted, left, chosen, torch, section) = (None, None, None, None, None);
         let shown = Self { wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
-        *self = Self { laying, placing, grip, pin: None, ..shown };
+        *self = Self { laying, placing, grip, pin: None, bend: Bend::default(), ..shown };
     }
 
     /// Keeps the range within the existing layers.

@@ -4,6 +4,7 @@ mod basic;
 mod bead;
 mod centre;
 mod compare;
+mod distortion;
 mod export;
 mod findings;
 mod layers;

@@ -1,6 +1,6 @@
 //! The 3-D view with its bar and its legend.
 
-use super::{bead, place, robot, scan, section, stock};
+use super::{bead, distortion, place, robot, scan, section, stock};
 use crate::actions::Action;
 use crate::known::{Known, Queue, View};
 use crate::view3d::{Colour, Pick, Style, face, palette};
@@ -24,16 +24,21 @@ const COLOURS: [(Colour, &str); 8] = [
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| bar(known, view, queue, ui));
     ui.horizontal_wrapped(|ui| {
-        colours(known, view, queue, ui);
-        legend(known, view, ui);
-        ui.separator();
+        // A bent shape has the colours of its movement, with a legend of its own.
+        if known.bent(view.state).is_none() {
+            colours(known, view, queue, ui);
+            legend(known, view, ui);
+            ui.separator();
+        }
         section::show(known, view, ui);
         ui.separator();
         place::switch(known, view, ui);
+        distortion::switch(known, view, queue, ui);
     });
     bead::show(known, view, ui);
     robot::joints(known, view, queue, ui);
     scan::show(known, view, queue, ui);
+    distortion::show(known, view, queue, ui);
     stock::show(known, view, ui);
     let (style, label) = (known.style(view.state), known.t("view-3d-label"));
     view.solid.around = place::around(known, view);

@@ -27,6 +27,8 @@ pub enum Colour {
     Temperature,
     /// How far the layer leans from level there, as the part is held, °.
     OffLevel,
+    /// How far the metal moves where plate and part are bent, mm.
+    Movement,
 }
 
 /// The plate on which the part is built; its top is z = 0.
@@ -49,6 +51,8 @@ pub struct Style {
     pub mesh: bool,
     /// Whether the scan is shown, coloured by its deviation; then only the edges of the model are.
     pub scan: bool,
+    /// Whether the bent plate is shown, in the colours of its movement; then only the edges of the model are.
+    pub bent: bool,
     /// Whether travels (moves with the arc off) are shown.
     pub travels: bool,
     /// Whether starts and ends of passes are marked.
@@ -81,6 +85,7 @@ impl Default for Style {
             colour: Colour::Kind,
             mesh: true,
             scan: false,
+            bent: false,
             travels: false,
             starts: false,
             marks_from: 0,

@@ -5,6 +5,7 @@ mod arm;
 mod broken;
 mod colours;
 mod contrast;
+mod distortion;
 mod docs;
 mod heat;
 mod holding;

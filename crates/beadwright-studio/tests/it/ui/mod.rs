@@ -3,6 +3,7 @@
 mod background;
 mod basic;
 mod compare;
+mod distortion;
 mod edit;
 mod export;
 mod faults;
