@@ -4,6 +4,7 @@ use crate::actions::Action;
 use crate::export::Export;
 use crate::heat;
 use crate::jobs::{self, Ask};
+use crate::known::OPENING;
 use crate::level;
 use crate::studio::Studio;
 use crate::thumbnail::{self, thumbnail};
@@ -28,10 +29,17 @@ impl Studio {
                 let program = Export::Program(self.view.dialect.clone());
                 self.begin_export(program);
             }
-            Action::Undo => {
-                let undone = self.open.project.undo();
-                self.went(undone);
+            // Who undoes a change does not expect the part to be closed.
+            Action::Undo if self.open.project.undoes() == Some(OPENING) => self.open.asks_undo = true,
+            Action::Undo => self.step_back(),
+            Action::DecideUndo(goes_on) => {
+                self.open.asks_undo = false;
+                if goes_on {
+                    self.step_back();
+                }
             }
+            Action::Try(change) => self.begin_trial(change),
+            Action::EndTrial(keeps) => self.end_trial(keeps),
             Action::Redo => {
                 let redone = self.open.project.redo();
                 self.went(redone);
@@ -92,7 +100,7 @@ impl Studio {
                     self.choose_folder();
                 }
             }
-            Action::AcceptDamaged => self.change("damaged", |project| project.accept_damaged = true),
+            Action::AcceptDamaged => self.change("skip-damaged", |project| project.accept_damaged = true),
             Action::OpenFile(path) => self.open(&path),
             Action::OpenExample(name) => self.open_example(name),
             Action::Speak(language) => {
@@ -214,6 +222,12 @@ impl Studio {
             let (layers, drawn) = (own.layers.clone(), own.scene.layers().to_vec());
             self.jobs.level_job = Some(level::level(&self.window.ctx, layers, drawn, profile));
         }
+    }
+
+    /// Undoes a step.
+    pub(crate) fn step_back(&mut self) {
+        let undone = self.open.project.undo();
+        self.went(undone);
     }
 
     /// Follows an undo or redo; `gone` says whether there was a step to take.

@@ -5,7 +5,7 @@ use crate::actions::Action;
 use crate::compared::Compared;
 use crate::distortion::Distorting;
 use crate::export::Export;
-use crate::form::Parsed;
+use crate::form::{self, Parsed};
 use crate::heat::Temperatures;
 use crate::history::History;
 use crate::jobs::{Answer, Ask, Job};
@@ -16,6 +16,7 @@ use crate::settings::{Settings, Store};
 use crate::state::PlanState;
 use crate::steps::Looked;
 use crate::text::Language;
+use crate::trial::Trial;
 use crate::view::{Mode, ViewState};
 use crate::view2d::View2d;
 use crate::view3d::{Colour, Pick, Plate, Style, View3d};
@@ -58,6 +59,9 @@ pub(crate) struct Window {
     pub(crate) closing: bool,
 }
 
+/// What the step that opens a part is about.
+pub(crate) const OPENING: &str = "step-open";
+
 /// The open project.
 pub(crate) struct Open {
     pub(crate) project: History<Project>,
@@ -69,6 +73,10 @@ pub(crate) struct Open {
     pub(crate) kept: Project,
     /// Number of undo steps when it was opened.
     pub(crate) opened: usize,
+    /// Whether the user is being asked about an undo that would close the part.
+    pub(crate) asks_undo: bool,
+    /// The remedy that is tried.
+    pub(crate) trial: Option<Trial>,
     /// The project of a run that crashed.
     pub(crate) lost: Option<Project>,
     /// The profile as the form needs it, from the text that was parsed last.
@@ -181,6 +189,16 @@ impl<'a> Known<'a> {
     /// The project.
     pub(crate) fn project(self) -> &'a Project {
         self.open.project.now()
+    }
+
+    /// What a step of the project is called, from what it is about: a key of the profile, or of a text.
+    pub(crate) fn step(self, about: &str) -> String {
+        let (language, name) = (self.language(), about.rsplit('.').next().unwrap_or(about));
+        match language.find(about) {
+            Some(text) => text.to_owned(),
+            None if form::BASIC.contains(&about) => language.word("basic", about),
+            None => language.word("name", name),
+        }
     }
 
     /// The profile as its form needs it.

@@ -22,6 +22,7 @@
 //! | `files`, [`export`] | opening and writing files |
 //! | [`disk`] | where files lie: on the disk; in a browser, what the user has handed over, and downloads |
 //! | `web` | the page in a browser |
+//! | [`remedy`], `trial` | what usually helps against a finding; a remedy that is tried |
 //! | [`actions`] | what the user can do; menus and keys |
 //! | [`thumbnail`] | pictures of the examples |
 //! | [`settings`], [`text`], [`fonts`], [`theme`] | what is remembered; texts; fonts; colours |
@@ -47,6 +48,7 @@ mod panels;
 pub mod planner;
 mod process;
 pub mod project;
+pub mod remedy;
 mod scan;
 pub mod settings;
 pub mod state;
@@ -55,6 +57,7 @@ pub mod studio;
 pub mod text;
 pub mod theme;
 pub mod thumbnail;
+mod trial;
 pub mod view;
 pub mod view2d;
 pub mod view3d;

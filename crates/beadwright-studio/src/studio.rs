@@ -4,7 +4,7 @@ pub use crate::known::Message;
 
 use crate::form::Parsed;
 use crate::history::History;
-use crate::known::{Jobs, Known, Open, Other, Plans, View, Window};
+use crate::known::{Jobs, Known, OPENING, Open, Other, Plans, View, Window};
 use crate::planner::{Planner, Urgency};
 use crate::project::Project;
 use crate::settings::Store;
@@ -61,6 +61,8 @@ impl Studio {
                 kept: Project::default(),
                 opened: 0,
                 lost: None,
+                asks_undo: false,
+                trial: None,
                 parsed: None,
                 refused: None,
             },
@@ -163,7 +165,7 @@ impl Studio {
     /// Switches to another project.
     pub(crate) fn begin(&mut self, project: Project) {
         self.open.project.seal();
-        self.open.project.set("open", project);
+        self.open.project.set(OPENING, project);
         self.open.project.seal();
         self.open.opened = self.open.project.steps();
         self.open.saved = self.open.project.now().clone();

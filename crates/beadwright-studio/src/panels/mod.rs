@@ -23,7 +23,10 @@ pub(crate) mod solid;
 mod start;
 mod stock;
 mod totals;
+mod trial;
 mod words;
+
+pub(crate) use totals::rows_of;
 
 use crate::known::{Known, Queue, View};
 use crate::view::{Mode, Side};
@@ -98,7 +101,7 @@ fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     ui.separator();
     scrolled(ui, |ui| match view.state.side {
         Side::Totals => totals::show(known, view, ui),
-        Side::Findings => findings::show(known, view, ui),
+        Side::Findings => findings::show(known, view, queue, ui),
         Side::Plots => plots::show(known, view, queue, ui),
         Side::Export => export::show(known, view, queue, ui),
     });

@@ -28,7 +28,7 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
 }
 
 /// The rows known so far for a plan.
-pub(super) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
+pub(crate) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
     let metrics: Option<&Metrics> = plan.summary.as_ref().map(|summary| &summary.metrics);
     let figures: Option<&Figures> = plan.total.as_ref();
     let totals = metrics.map(rows::totals).into_iter().flatten();
@@ -50,7 +50,7 @@ pub(super) fn named(known: Known<'_>, ui: &mut Ui, name: &'static str) {
 fn name_of(known: Known<'_>, name: &'static str) -> &'static str {
     let key = format!("total {name}");
     let printed = known.prints().then(|| known.language().find(&format!("fdm {key}"))).flatten();
-    printed.or_else(|| known.language().find(&key)).unwrap_or(name)
+    printed.or_else(|| known.language().find(&key)).unwrap_or_else(|| known.t(name))
 }
 
 fn chosen(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {

@@ -22,4 +22,5 @@ mod preform;
 mod scan;
 mod space;
 mod start;
+mod trial;
 mod words;
