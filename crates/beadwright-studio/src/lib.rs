@@ -14,6 +14,7 @@
 //! | [`compared`], `scan` | a scan of the built part compared with the part |
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
+//! | [`shares`] | what the time of a program is spent on |
 //! | [`arm`], [`holding`] | the robot's pose with the torch at a place; how the part is held there |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
@@ -51,6 +52,7 @@ pub mod project;
 pub mod remedy;
 mod scan;
 pub mod settings;
+pub mod shares;
 pub mod state;
 pub mod steps;
 pub mod studio;

@@ -232,8 +232,25 @@ impl ViewState {
 
     /// Advances the torch after `passed` seconds of real time; it stops at the end of the last layer.
     pub fn advance(&mut self, passed: f64, scene: &Scene) {
-        let total = scene.total_seconds();
-        self.seconds = (self.seconds + passed * self.rate).min(total);
+        self.go_to(self.seconds + passed * self.rate, scene);
+        self.playing = self.torch.is_some() && self.seconds < scene.total_seconds();
+    }
+
+    /// The time that what is shown has reached, s from the start of the program.
+    pub fn now(&self, scene: &Scene) -> f64 {
+        if self.torch.is_some() {
+            return self.seconds;
+        }
+        let Some(layer) = scene.layer(self.last) else { return 0.0 };
+        let shown = (self.progress * layer.len() as f64).round() as usize;
+        let within =
+            if shown < layer.len() { layer.times(shown).map_or(0.0, |(begin, _)| begin) } else { layer.seconds() };
+        scene.seconds_before(self.last) + within
+    }
+
+    /// Takes the torch to a time, s from the start of the program, and stops it there.
+    pub fn go_to(&mut self, seconds: f64, scene: &Scene) {
+        self.seconds = seconds.min(scene.total_seconds());
         let Some(at) = scene.at_time(self.seconds) else {
             self.playing = false;
             return;
@@ -242,7 +259,6 @@ impl ViewState {
         self.look_at(at.layer);
         self.progress = at.segment as f64 / pieces as f64;
         self.torch = Some(at.torch);
-        self.playing = self.seconds < total;
     }
 
     /// Moves one layer up or down.

@@ -3,6 +3,7 @@
 mod basic;
 mod bead;
 mod centre;
+mod clock;
 mod compare;
 mod distortion;
 mod export;
