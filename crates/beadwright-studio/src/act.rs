@@ -3,9 +3,10 @@
 use crate::actions::Action;
 use crate::export::Export;
 use crate::heat;
-use crate::jobs::{self, Ask};
+use crate::jobs::{self, Ask, Job};
 use crate::known::OPENING;
 use crate::level;
+use crate::listing::Listing;
 use crate::studio::Studio;
 use crate::thumbnail::{self, thumbnail};
 use crate::view::{Mode, Side};
@@ -134,6 +135,7 @@ impl Studio {
             Action::Heat => self.begin_heat(),
             Action::Level => self.begin_level(),
             Action::Distort => self.begin_distortion(),
+            Action::List => self.begin_listing(),
             Action::StopDistortion => self.stop_distortion(),
             Action::CloseScan => self.close_scan(),
             Action::TakeCell(name) => {
@@ -213,6 +215,17 @@ impl Studio {
         if let Some(profile) = self.plans.own.profile.clone() {
             self.jobs.heat_job = Some(heat::heat(&self.window.ctx, self.plans.own.layers.clone(), profile));
         }
+    }
+
+    /// Writes the program, and finds out where the torch is at each of its lines.
+    fn begin_listing(&mut self) {
+        let own = &self.plans.own;
+        let (Some(header), Some(profile)) = (own.header.clone(), own.profile.clone()) else { return };
+        let (layers, dialect) = (own.layers.clone(), self.view.dialect.clone());
+        self.jobs.listing_job = Some(Job::start(&self.window.ctx, move || {
+            let listing = Listing::of(&header, &profile, &layers, &dialect);
+            (dialect, listing)
+        }));
     }
 
     /// Computes how far layers lean from level.

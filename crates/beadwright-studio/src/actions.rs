@@ -116,6 +116,8 @@ pub enum Action {
     Distort,
     /// Gives it up.
     StopDistortion,
+    /// Writes the program into its panel.
+    List,
     /// Computes what the robot can reach.
     Reach,
     /// Restores the project of a run that crashed.

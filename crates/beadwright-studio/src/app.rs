@@ -61,6 +61,12 @@ impl Studio {
             }
             None => {}
         }
+        match jobs::take(&mut self.jobs.listing_job) {
+            Some(Ok(listing)) => self.jobs.listing = Some(listing),
+            // Do not try again: it would only fail again.
+            Some(Err(error)) => self.jobs.listing = Some((self.view.dialect.clone(), Err(error))),
+            None => {}
+        }
         self.hear_of_scan();
         self.hear_of_distortion();
         match jobs::take(&mut self.jobs.reach_job) {

@@ -73,6 +73,7 @@ enum Panel {
     Totals,
     Findings,
     Plots,
+    Program,
     Export,
 }
 
@@ -143,6 +144,7 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
         Panel::Totals => Side::Totals,
         Panel::Findings => Side::Findings,
         Panel::Plots => Side::Plots,
+        Panel::Program => Side::Program,
         Panel::Export => Side::Export,
     });
     view.show.heights |= arguments.heights;

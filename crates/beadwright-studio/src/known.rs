@@ -10,6 +10,7 @@ use crate::heat::Temperatures;
 use crate::history::History;
 use crate::jobs::{Answer, Ask, Job};
 use crate::level::Leans;
+use crate::listing::Listing;
 use crate::planner::Planner;
 use crate::project::Project;
 use crate::settings::{Settings, Store};
@@ -92,6 +93,9 @@ pub(crate) struct Plans {
     pub(crate) other: Option<Other>,
 }
 
+/// The dialect of a program, and its lines, or a sentence on why it cannot be written.
+pub(crate) type Listed = (String, Result<Listing, String>);
+
 /// Other background work, and its results.
 #[derive(Default)]
 pub(crate) struct Jobs {
@@ -106,6 +110,9 @@ pub(crate) struct Jobs {
     pub(crate) looked: Looked,
     pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
     pub(crate) level_job: Option<Job<Leans>>,
+    pub(crate) listing_job: Option<Job<Listed>>,
+    /// The lines of the program.
+    pub(crate) listing: Option<Listed>,
     /// How plate and part bend, computed or being computed.
     pub(crate) distortion: Option<Distorting>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
@@ -128,6 +135,7 @@ impl Jobs {
             || self.heat_job.is_some()
             || self.level_job.is_some()
             || self.scan_job.is_some()
+            || self.listing_job.is_some()
             || self.scan_wanted.is_some()
             || self.distortion.as_ref().is_some_and(|distortion| distortion.progress().is_some());
         !computes && !self.looked.is_busy()

@@ -14,6 +14,7 @@
 //! | [`compared`], `scan` | a scan of the built part compared with the part |
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
+//! | [`listing`] | the lines of a program, and where the torch is at each of them |
 //! | [`shares`] | what the time of a program is spent on |
 //! | [`arm`], [`holding`] | the robot's pose with the torch at a place; how the part is held there |
 //! | [`view`] | what is shown, and how |
@@ -45,6 +46,7 @@ pub mod holding;
 pub mod jobs;
 mod known;
 pub mod level;
+pub mod listing;
 mod panels;
 pub mod planner;
 mod process;

@@ -234,6 +234,7 @@ impl Studio {
         // Pending answers are about the previous plan.
         (self.jobs.reach, self.jobs.reach_job) = (None, None);
         self.jobs.looked.forget();
+        (self.jobs.listing, self.jobs.listing_job) = (None, None);
         (self.jobs.heat_job, self.jobs.level_job, self.jobs.distortion) = (None, None, None);
         if self.project().source.is_none() {
             // Undo has led back to the empty window.

@@ -27,6 +27,8 @@ pub enum Side {
     Findings,
     /// Curves.
     Plots,
+    /// The lines of the program.
+    Program,
     /// What can be exported.
     Export,
 }
@@ -112,6 +114,8 @@ pub struct ViewState {
     pub pin: Option<Pin>,
     /// The chosen bead: layer, pass, piece.
     pub chosen: Option<(usize, usize, usize)>,
+    /// The line of the program that was last brought into view.
+    pub listed: Option<usize>,
     /// The dialect to write.
     pub dialect: String,
     /// The folder to write into; if empty, the user is asked for one.
@@ -161,6 +165,7 @@ impl Default for ViewState {
             show: Show::default(),
             pin: None,
             chosen: None,
+            listed: None,
             dialect: "krl".to_owned(),
             folder: String::new(),
             cell: beadwright::robot::cell::BUILT_IN[0].0.to_owned(),

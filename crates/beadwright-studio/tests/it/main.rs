@@ -10,6 +10,7 @@ mod docs;
 mod heat;
 mod holding;
 mod inside;
+mod listing;
 mod project;
 mod section;
 #[path = "../../../beadwright/tests/it/sight/mod.rs"]

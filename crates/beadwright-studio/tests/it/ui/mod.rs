@@ -19,6 +19,7 @@ mod place;
 mod placement;
 mod play;
 mod preform;
+mod program;
 mod scan;
 mod space;
 mod start;
