@@ -242,6 +242,19 @@ impl<'a> Known<'a> {
         Some(Pick { layer, pass, segment: beads.segments_of(piece).start })
     }
 
+    /// The values at the two ends of the colours: those chosen by hand, or else the least and the largest of all plans in view.
+    pub(crate) fn range(self, view: &ViewState) -> Option<(f64, f64)> {
+        if let Some((colour, [low, high])) = view.range
+            && colour == view.colour
+        {
+            return Some((low, high));
+        }
+        let other = self.plans.other.as_ref().filter(|_| view.mode == Mode::Compare);
+        let plans = [Some(&self.plans.own), other.map(|other| &other.plan)];
+        let ranges = plans.into_iter().flatten().filter_map(|plan| plan.scene.value_range(view.colour));
+        ranges.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
+    }
+
     /// What the 3-D view shows.
     pub(crate) fn style(self, view: &ViewState) -> Style {
         let inner = view.scan && self.scan().is_some() || view.stock && self.has_stock();
@@ -252,6 +265,7 @@ impl<'a> Known<'a> {
         let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
         Style {
             colour: if bent { Colour::Movement } else { view.colour },
+            range: self.range(view).filter(|_| !bent),
             mesh: view.mesh || view.laying,
             scan,
             bent: bent && view.plate,

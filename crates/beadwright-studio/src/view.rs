@@ -82,6 +82,8 @@ pub struct ViewState {
     pub torch: Option<Stance>,
     /// What the colours mean.
     pub colour: Colour,
+    /// The values at the two ends of the colours that were chosen by hand, and for which colours.
+    pub range: Option<(Colour, [f64; 2])>,
     /// Whether the part is shown.
     pub mesh: bool,
     /// Whether the scan is shown instead of the beads, where there is one.
@@ -149,6 +151,7 @@ impl Default for ViewState {
             seconds: 0.0,
             torch: None,
             colour: Colour::Kind,
+            range: None,
             mesh: true,
             scan: true,
             stock: false,
@@ -186,7 +189,7 @@ impl ViewState {
         let (laying, placing, grip) = (false, false, None);
         let (wanted, left, chosen, torch, section) = (None, None, None, None, None);
         let shown = Self { wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
-        *self = Self { laying, placing, grip, pin: None, bend: Bend::default(), ..shown };
+        *self = Self { laying, placing, grip, pin: None, bend: Bend::default(), range: None, ..shown };
     }
 
     /// Keeps the range within the existing layers.

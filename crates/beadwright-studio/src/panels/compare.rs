@@ -20,7 +20,10 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     let solid = view.state.compare_solid;
     if solid {
         ui.horizontal_wrapped(|ui| solid::bar(known, view, queue, ui));
-        ui.horizontal(|ui| solid::colours(known, view, queue, ui));
+        ui.horizontal_wrapped(|ui| {
+            solid::colours(known, view, queue, ui);
+            solid::legend(known, view, ui);
+        });
     } else {
         bar(known, view, ui);
     }

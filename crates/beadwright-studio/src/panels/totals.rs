@@ -3,6 +3,7 @@
 use super::words;
 use crate::known::{Known, View};
 use crate::state::PlanState;
+use crate::theme;
 use beadwright::deposit::Figures;
 use beadwright::metrics::Metrics;
 use beadwright::report::rows;
@@ -19,12 +20,28 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
     Grid::new("totals").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         for (name, value) in &rows {
             named(known, ui, name);
-            ui.label(value);
+            match passes(&known.plans.own, name) {
+                Some(true) => ui.colored_label(theme::good(ui.visuals().dark_mode), format!("✔ {value}")),
+                Some(false) => ui.colored_label(ui.visuals().error_fg_color, format!("✖ {value}")),
+                None => ui.label(value),
+            };
             ui.end_row();
         }
     });
     ui.separator();
     chosen(known, view, ui);
+}
+
+/// Whether what a row says keeps the limits of the checks, where they have any.
+fn passes(plan: &PlanState, name: &str) -> Option<bool> {
+    let (figures, limits) = (plan.total.as_ref()?, &plan.profile.as_ref()?.check);
+    match name {
+        "void / low area" => Some(figures.void_percent() <= limits.max_void),
+        "overfill / outside" => {
+            Some(figures.overfill_percent() <= limits.max_overfill && figures.outside_percent() <= limits.max_outside)
+        }
+        _ => None,
+    }
 }
 
 /// The rows known so far for a plan.

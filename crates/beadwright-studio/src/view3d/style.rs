@@ -47,6 +47,8 @@ pub struct Plate {
 pub struct Style {
     /// What the colour of a bead means.
     pub colour: Colour,
+    /// The values at the two ends of the colours, where they are not the least and the largest of the scene.
+    pub range: Option<(f64, f64)>,
     /// Whether the model is shown: solid by itself, translucent around beads.
     pub mesh: bool,
     /// Whether the scan is shown, coloured by its deviation; then only the edges of the model are.
@@ -83,6 +85,7 @@ impl Default for Style {
     fn default() -> Self {
         Self {
             colour: Colour::Kind,
+            range: None,
             mesh: true,
             scan: false,
             bent: false,

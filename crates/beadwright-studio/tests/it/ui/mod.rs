@@ -20,6 +20,7 @@ mod placement;
 mod play;
 mod preform;
 mod program;
+mod range;
 mod scan;
 mod space;
 mod start;
