@@ -210,10 +210,13 @@ impl Studio {
         }
     }
 
-    /// Computes how warm the metal is where passes begin.
+    /// Computes how warm the metal is where passes begin, in the plan and then in the one it is compared with.
     fn begin_heat(&mut self) {
-        if let Some(profile) = self.plans.own.profile.clone() {
-            self.jobs.heat_job = Some(heat::heat(&self.window.ctx, self.plans.own.layers.clone(), profile));
+        self.jobs.heat_of_other = !self.plans.own.is_cold();
+        let other = self.plans.other.as_ref().map(|other| &other.plan);
+        let plan = if self.jobs.heat_of_other { other } else { Some(&self.plans.own) };
+        if let Some((plan, profile)) = plan.and_then(|plan| Some((plan, plan.profile.clone()?))) {
+            self.jobs.heat_job = Some(heat::heat(&self.window.ctx, plan.layers.clone(), profile));
         }
     }
 

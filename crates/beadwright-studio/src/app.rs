@@ -35,8 +35,12 @@ impl Studio {
         }
         match jobs::take(&mut self.jobs.heat_job) {
             Some(Ok(Ok(temperatures))) if temperatures.iter().any(|layer| !layer.is_empty()) => {
-                for (layer, temperatures) in temperatures.into_iter().enumerate() {
-                    self.plans.own.scene.set_temperatures(layer, temperatures);
+                let other = self.plans.other.as_mut().map(|other| &mut other.plan);
+                let plan = if self.jobs.heat_of_other { other } else { Some(&mut self.plans.own) };
+                if let Some(plan) = plan {
+                    for (layer, temperatures) in temperatures.into_iter().enumerate() {
+                        plan.scene.set_temperatures(layer, temperatures);
+                    }
                 }
             }
             // Nothing to show; do not try again.

@@ -108,6 +108,8 @@ pub(crate) struct Jobs {
     pub(crate) doubted: bool,
     /// The steps of the strategy in the layer in view.
     pub(crate) looked: Looked,
+    /// Whether temperatures are computed for the second plan.
+    pub(crate) heat_of_other: bool,
     pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
     pub(crate) level_job: Option<Job<Leans>>,
     pub(crate) listing_job: Option<Job<Listed>>,

@@ -1,7 +1,7 @@
 //! What is known of a plan, put together from the planner's events.
 
 use crate::planner::{Event, Failure};
-use crate::view3d::{Scanned, Scene};
+use crate::view3d::{Colour, Scanned, Scene};
 use beadwright::Finding;
 use beadwright::check;
 use beadwright::deposit::{Figures, Judgement};
@@ -96,6 +96,12 @@ impl PlanState {
     /// written to files.
     pub fn is_of_last_request(&self) -> bool {
         self.received == Received::Layers
+    }
+
+    /// Whether its temperatures could be computed, but are not.
+    pub fn is_cold(&self) -> bool {
+        let planned = self.summary.is_some() && self.is_of_last_request();
+        planned && self.scene.value_range(Colour::Temperature).is_none()
     }
 
     /// Takes in an event.

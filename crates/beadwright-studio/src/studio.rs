@@ -129,6 +129,11 @@ impl Studio {
         &self.plans.own
     }
 
+    /// The plan that it is compared with.
+    pub fn other_plan(&self) -> Option<&PlanState> {
+        self.plans.other.as_ref().map(|other| &other.plan)
+    }
+
     /// The messages in the window.
     pub fn messages(&self) -> &[Message] {
         &self.window.messages
@@ -255,6 +260,8 @@ impl Studio {
 
     /// Plans the part with a second strategy too, shown next to the first; none removes the second plan.
     pub fn compare_with(&mut self, strategy: Option<StrategyName>) {
+        // Pending temperatures may be those of another plan.
+        self.jobs.heat_job = None;
         let Some(strategy) = strategy else {
             self.plans.other = None;
             return;

@@ -3,6 +3,7 @@
 use super::{bead, distortion, place, robot, scan, section, stock};
 use crate::actions::Action;
 use crate::known::{Known, Queue, View};
+use crate::view::Mode;
 use crate::view3d::{Colour, Pick, Style, face, palette};
 use beadwright::model::Placement;
 use beadwright::robot::Frame;
@@ -109,15 +110,16 @@ pub(super) fn colours(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, 
     lean(known, view, queue, ui);
 }
 
-/// Has temperatures computed when they are to be shown and the plan has none.
+/// Has temperatures computed when they are to be shown and a plan in view has none.
 fn warm(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
     if known.jobs.heat_job.is_some() {
         ui.spinner();
         ui.weak(known.t("stage-heat"));
         return;
     }
-    let has = || known.plans.own.scene.value_range(Colour::Temperature).is_some();
-    if view.state.colour == Colour::Temperature && known.plans.own.summary.is_some() && !has() {
+    let other = known.plans.other.as_ref().filter(|_| view.state.mode == Mode::Compare);
+    let cold = known.plans.own.is_cold() || other.is_some_and(|other| other.plan.is_cold());
+    if view.state.colour == Colour::Temperature && cold {
         queue.push(Action::Heat);
     }
 }

@@ -61,6 +61,17 @@ fn strategies_compared_in_3d_have_one_legend_for_both() {
     harness.run_steps(4);
     let both: f64 = colour_range(&harness)[1].parse().unwrap();
     assert!(both >= alone, "{both}, {alone} alone");
+    // Temperatures are those of each plan.
+    harness.state_mut().view().colour = Colour::Temperature;
+    harness.run_steps(2);
+    while harness.state().other_plan().unwrap().is_cold() {
+        wait(&mut harness);
+    }
+    let [own, other] = [harness.state().plan(), harness.state().other_plan().unwrap()]
+        .map(|plan| plan.scene.value_range(Colour::Temperature).unwrap());
+    assert_ne!(own, other);
+    let (low, high) = (own.0.min(other.0), own.1.max(other.1));
+    assert_eq!(colour_range(&harness), [low, high].map(|end| format!("{end:.1} °C")));
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compare.png");
     harness.render().unwrap().save(path).unwrap();
 }
