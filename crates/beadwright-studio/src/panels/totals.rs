@@ -20,7 +20,7 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
     Grid::new("totals").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         for (name, value) in &rows {
             named(known, ui, name);
-            match passes(&known.plans.own, name) {
+            match keeps_limits(&known.plans.own, name) {
                 Some(true) => ui.colored_label(theme::good(ui.visuals().dark_mode), format!("✔ {value}")),
                 Some(false) => ui.colored_label(ui.visuals().error_fg_color, format!("✖ {value}")),
                 None => ui.label(value),
@@ -33,7 +33,7 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
 }
 
 /// Whether what a row says keeps the limits of the checks, where they have any.
-fn passes(plan: &PlanState, name: &str) -> Option<bool> {
+fn keeps_limits(plan: &PlanState, name: &str) -> Option<bool> {
     let (figures, limits) = (plan.total.as_ref()?, &plan.profile.as_ref()?.check);
     match name {
         "void / low area" => Some(figures.void_percent() <= limits.max_void),
