@@ -7,8 +7,10 @@ use crate::jobs::{self, Ask, Job};
 use crate::known::OPENING;
 use crate::level;
 use crate::listing::Listing;
+use crate::remedy::Change;
 use crate::studio::Studio;
 use crate::thumbnail::{self, thumbnail};
+use crate::trial::{self, Trial};
 use crate::view::{Mode, Side};
 use crate::view3d::StandardView;
 use beadwright::example;
@@ -240,8 +242,27 @@ impl Studio {
         }
     }
 
+    /// Makes a change, to be kept or taken back.
+    fn begin_trial(&mut self, change: Change) {
+        let Some(before) = trial::figures(&self.plans.own) else { return };
+        let from = self.known().value_now(change.key);
+        self.open.project.seal();
+        self.set_value(change.key, &change.value);
+        self.open.project.seal();
+        self.open.trial = Some(Trial { change, from, before, tried: self.project().clone() });
+    }
+
+    /// Keeps the change that is tried, or takes it back.
+    fn end_trial(&mut self, keeps: bool) {
+        let takes_back = self.known().trial().is_some() && !keeps;
+        self.open.trial = None;
+        if takes_back {
+            self.step_back();
+        }
+    }
+
     /// Undoes a step.
-    pub(crate) fn step_back(&mut self) {
+    fn step_back(&mut self) {
         let undone = self.open.project.undo();
         self.went(undone);
     }

@@ -201,6 +201,16 @@ impl<'a> Known<'a> {
         self.open.project.now()
     }
 
+    /// The change that is tried, as long as nothing else is changed.
+    pub(crate) fn trial(self) -> Option<&'a Trial> {
+        self.open.trial.as_ref().filter(|trial| trial.tried == *self.project())
+    }
+
+    /// A value of the profile, as in TOML; `None` where the profile does not set it.
+    pub(crate) fn value_now(self, key: &str) -> Option<String> {
+        form::value(&self.parsed()?.values, key).map(|value| value.to_string())
+    }
+
     /// What a step of the project is called, from what it is about: a key of the profile, or of a text.
     pub(crate) fn step(self, about: &str) -> String {
         let (language, name) = (self.language(), about.rsplit('.').next().unwrap_or(about));

@@ -10,7 +10,7 @@
 //! | [`project`], [`history`] | what the user works on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
 //! | [`jobs`], [`heat`], [`level`], [`steps`] | other background work: reach, file dialogs; temperatures; how far layers lean; the steps of strategies |
-//! | [`distortion`] | how plate and part bend as they cool |
+//! | [`distortion`], `bending` | how plate and part bend as they cool |
 //! | [`compared`], `scan` | a scan of the built part compared with the part |
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
@@ -33,6 +33,7 @@ mod act;
 pub mod actions;
 mod app;
 pub mod arm;
+mod bending;
 pub mod compared;
 pub mod disk;
 pub mod distortion;

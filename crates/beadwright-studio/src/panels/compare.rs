@@ -101,7 +101,7 @@ fn choose(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
 /// Totals of both plans side by side.
 pub(super) fn differences(known: Known<'_>, ui: &mut Ui) {
     let Some(other) = &known.plans.other else { return };
-    let (own, theirs) = (totals::rows_of(&known.plans.own), totals::rows_of(&other.plan));
+    let (own, theirs) = (known.plans.own.totals(), other.plan.totals());
     let names = [known.plans.own.header.as_ref().map_or("", |header| header.strategy.as_str()), other.strategy.name()];
     // As many tables side by side as fit leave more room for the views.
     const WIDTH: f32 = 400.0;

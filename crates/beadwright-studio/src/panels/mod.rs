@@ -28,8 +28,6 @@ mod totals;
 mod trial;
 mod words;
 
-pub(crate) use totals::rows_of;
-
 use crate::known::{Known, Queue, View};
 use crate::view::{Mode, Side};
 use eframe::egui::{Button, CentralPanel, Panel, ScrollArea, TextStyle, Ui, Vec2, vec2};

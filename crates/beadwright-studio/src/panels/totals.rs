@@ -4,9 +4,6 @@ use super::words;
 use crate::known::{Known, View};
 use crate::state::PlanState;
 use crate::theme;
-use beadwright::deposit::Figures;
-use beadwright::metrics::Metrics;
-use beadwright::report::rows;
 use eframe::egui::{Grid, Ui};
 
 pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
@@ -16,7 +13,7 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
         ui.label(format!("{}: {:.1} × {:.1} × {:.1} mm", known.t("size"), size.x, size.y, size.z));
         ui.separator();
     }
-    let rows = rows_of(&known.plans.own);
+    let rows = known.plans.own.totals();
     Grid::new("totals").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         for (name, value) in &rows {
             named(known, ui, name);
@@ -42,20 +39,6 @@ fn keeps_limits(plan: &PlanState, name: &str) -> Option<bool> {
         }
         _ => None,
     }
-}
-
-/// The rows known so far for a plan.
-pub(crate) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
-    let metrics: Option<&Metrics> = plan.summary.as_ref().map(|summary| &summary.metrics);
-    let figures: Option<&Figures> = plan.total.as_ref();
-    let totals = metrics.map(rows::totals).into_iter().flatten();
-    // Sliders and plots count all layers.
-    let all = plan.layers.len();
-    let totals = totals.map(|(name, value)| match metrics {
-        Some(metrics) if name == "layers" && all > metrics.layers => (name, format!("{value} / {all}")),
-        _ => (name, value),
-    });
-    totals.chain(figures.map(rows::deposit).into_iter().flatten()).collect()
 }
 
 /// A row's name, with its meaning as a hint.

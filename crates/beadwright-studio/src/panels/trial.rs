@@ -3,6 +3,7 @@
 use crate::actions::Action;
 use crate::known::{Known, Queue};
 use crate::remedy::{self, Change};
+use crate::state::Rows;
 use crate::trial::{self, Trial};
 use beadwright::Finding;
 use eframe::egui::{Button, Grid, Ui};
@@ -45,7 +46,7 @@ pub(super) fn show(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
 }
 
 /// The figures that differ.
-fn differences(known: Known<'_>, ui: &mut Ui, before: &trial::Rows, after: &trial::Rows) {
+fn differences(known: Known<'_>, ui: &mut Ui, before: &Rows, after: &Rows) {
     Grid::new("trial").num_columns(3).striped(true).show(ui, |ui| {
         ui.label("");
         ["before", "after"].into_iter().for_each(|key| drop(ui.strong(known.t(key))));
