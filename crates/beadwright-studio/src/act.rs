@@ -3,10 +3,14 @@
 use crate::actions::Action;
 use crate::export::Export;
 use crate::heat;
-use crate::jobs::{self, Ask};
+use crate::jobs::{self, Ask, Job};
+use crate::known::OPENING;
 use crate::level;
+use crate::listing::Listing;
+use crate::remedy::Change;
 use crate::studio::Studio;
 use crate::thumbnail::{self, thumbnail};
+use crate::trial::{self, Trial};
 use crate::view::{Mode, Side};
 use crate::view3d::StandardView;
 use beadwright::example;
@@ -28,10 +32,17 @@ impl Studio {
                 let program = Export::Program(self.view.dialect.clone());
                 self.begin_export(program);
             }
-            Action::Undo => {
-                let undone = self.open.project.undo();
-                self.went(undone);
+            // Who undoes a change does not expect the part to be closed.
+            Action::Undo if self.open.project.undoes() == Some(OPENING) => self.open.asks_undo = true,
+            Action::Undo => self.step_back(),
+            Action::DecideUndo(goes_on) => {
+                self.open.asks_undo = false;
+                if goes_on {
+                    self.step_back();
+                }
             }
+            Action::Try(change) => self.begin_trial(change),
+            Action::EndTrial(keeps) => self.end_trial(keeps),
             Action::Redo => {
                 let redone = self.open.project.redo();
                 self.went(redone);
@@ -46,6 +57,9 @@ impl Studio {
                 }
                 self.view.playing = false;
                 self.view.pin = None;
+                if self.jobs.distortion.as_ref().is_some_and(|distortion| distortion.progress().is_some()) {
+                    self.stop_distortion();
+                }
             }
             Action::Solid => self.view.switch(Mode::Solid),
             Action::Layer => self.view.switch(Mode::Layer),
@@ -89,7 +103,7 @@ impl Studio {
                     self.choose_folder();
                 }
             }
-            Action::AcceptDamaged => self.change("damaged", |project| project.accept_damaged = true),
+            Action::AcceptDamaged => self.change("skip-damaged", |project| project.accept_damaged = true),
             Action::OpenFile(path) => self.open(&path),
             Action::OpenExample(name) => self.open_example(name),
             Action::Speak(language) => {
@@ -122,6 +136,9 @@ impl Studio {
             Action::LookCloser => self.look_closer(),
             Action::Heat => self.begin_heat(),
             Action::Level => self.begin_level(),
+            Action::Distort => self.begin_distortion(),
+            Action::List => self.begin_listing(),
+            Action::StopDistortion => self.stop_distortion(),
             Action::CloseScan => self.close_scan(),
             Action::TakeCell(name) => {
                 self.view.cell_chosen = true;
@@ -195,11 +212,25 @@ impl Studio {
         }
     }
 
-    /// Computes how warm the metal is where passes begin.
+    /// Computes how warm the metal is where passes begin, in the plan and then in the one it is compared with.
     fn begin_heat(&mut self) {
-        if let Some(profile) = self.plans.own.profile.clone() {
-            self.jobs.heat_job = Some(heat::heat(&self.window.ctx, self.plans.own.layers.clone(), profile));
+        self.jobs.heat_of_other = !self.plans.own.is_cold();
+        let other = self.plans.other.as_ref().map(|other| &other.plan);
+        let plan = if self.jobs.heat_of_other { other } else { Some(&self.plans.own) };
+        if let Some((plan, profile)) = plan.and_then(|plan| Some((plan, plan.profile.clone()?))) {
+            self.jobs.heat_job = Some(heat::heat(&self.window.ctx, plan.layers.clone(), profile));
         }
+    }
+
+    /// Writes the program, and finds out where the torch is at each of its lines.
+    fn begin_listing(&mut self) {
+        let own = &self.plans.own;
+        let (Some(header), Some(profile)) = (own.header.clone(), own.profile.clone()) else { return };
+        let (layers, dialect) = (own.layers.clone(), self.view.dialect.clone());
+        self.jobs.listing_job = Some(Job::start(&self.window.ctx, move || {
+            let listing = Listing::of(&header, &profile, &layers, &dialect);
+            (dialect, listing)
+        }));
     }
 
     /// Computes how far layers lean from level.
@@ -209,6 +240,31 @@ impl Studio {
             let (layers, drawn) = (own.layers.clone(), own.scene.layers().to_vec());
             self.jobs.level_job = Some(level::level(&self.window.ctx, layers, drawn, profile));
         }
+    }
+
+    /// Makes a change, to be kept or taken back.
+    fn begin_trial(&mut self, change: Change) {
+        let Some(before) = trial::figures(&self.plans.own) else { return };
+        let from = self.known().value_now(change.key);
+        self.open.project.seal();
+        self.set_value(change.key, &change.value);
+        self.open.project.seal();
+        self.open.trial = Some(Trial { change, from, before, tried: self.project().clone() });
+    }
+
+    /// Keeps the change that is tried, or takes it back.
+    fn end_trial(&mut self, keeps: bool) {
+        let takes_back = self.known().trial().is_some() && !keeps;
+        self.open.trial = None;
+        if takes_back {
+            self.step_back();
+        }
+    }
+
+    /// Undoes a step.
+    fn step_back(&mut self) {
+        let undone = self.open.project.undo();
+        self.went(undone);
     }
 
     /// Follows an undo or redo; `gone` says whether there was a step to take.

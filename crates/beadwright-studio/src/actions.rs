@@ -2,6 +2,7 @@
 
 use crate::export::Export;
 use crate::jobs::Ask;
+use crate::remedy::Change;
 use crate::text::Language;
 use beadwright::fill::StrategyName;
 use beadwright::model::Placement;
@@ -89,6 +90,12 @@ pub enum Action {
     Height(f64),
     /// Plans with a second strategy too.
     CompareWith(StrategyName),
+    /// Undoes the step that opened the part, or does not.
+    DecideUndo(bool),
+    /// Tries a change of the profile.
+    Try(Change),
+    /// Keeps the change that is tried, or takes it back.
+    EndTrial(bool),
     /// Removes a message, by its index.
     Dismiss(usize),
     /// Removes the message on why there is no plan.
@@ -105,6 +112,12 @@ pub enum Action {
     Heat,
     /// Computes how far layers lean from level.
     Level,
+    /// Computes how plate and part bend.
+    Distort,
+    /// Gives it up.
+    StopDistortion,
+    /// Writes the program into its panel.
+    List,
     /// Computes what the robot can reach.
     Reach,
     /// Restores the project of a run that crashed.

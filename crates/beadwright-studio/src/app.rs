@@ -35,8 +35,12 @@ impl Studio {
         }
         match jobs::take(&mut self.jobs.heat_job) {
             Some(Ok(Ok(temperatures))) if temperatures.iter().any(|layer| !layer.is_empty()) => {
-                for (layer, temperatures) in temperatures.into_iter().enumerate() {
-                    self.plans.own.scene.set_temperatures(layer, temperatures);
+                let other = self.plans.other.as_mut().map(|other| &mut other.plan);
+                let plan = if self.jobs.heat_of_other { other } else { Some(&mut self.plans.own) };
+                if let Some(plan) = plan {
+                    for (layer, temperatures) in temperatures.into_iter().enumerate() {
+                        plan.scene.set_temperatures(layer, temperatures);
+                    }
                 }
             }
             // Nothing to show; do not try again.
@@ -61,7 +65,14 @@ impl Studio {
             }
             None => {}
         }
+        match jobs::take(&mut self.jobs.listing_job) {
+            Some(Ok(listing)) => self.jobs.listing = Some(listing),
+            // Do not try again: it would only fail again.
+            Some(Err(error)) => self.jobs.listing = Some((self.view.dialect.clone(), Err(error))),
+            None => {}
+        }
         self.hear_of_scan();
+        self.hear_of_distortion();
         match jobs::take(&mut self.jobs.reach_job) {
             Some(Ok(Ok(reach))) => {
                 self.jobs.reach = Some(reach);

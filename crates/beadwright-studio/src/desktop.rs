@@ -44,6 +44,9 @@ struct Arguments {
     /// Scan of the built part to show, coloured by its distance from the part.
     #[arg(long, value_name = "FILE")]
     scan: Option<PathBuf>,
+    /// Show plate and part as they bend while the metal cools.
+    #[arg(long)]
+    bent: bool,
     /// Show the arm of the robot cell.
     #[arg(long)]
     robot: bool,
@@ -70,6 +73,7 @@ enum Panel {
     Totals,
     Findings,
     Plots,
+    Program,
     Export,
 }
 
@@ -140,11 +144,13 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
         Panel::Totals => Side::Totals,
         Panel::Findings => Side::Findings,
         Panel::Plots => Side::Plots,
+        Panel::Program => Side::Program,
         Panel::Export => Side::Export,
     });
     view.show.heights |= arguments.heights;
     view.show.regions |= arguments.steps;
     view.placing |= arguments.place;
+    view.bend.shown |= arguments.bent;
     view.robot |= arguments.robot;
     view.compare_solid |= arguments.solid;
     // Parts lie around x = y = 0, and what is in front is cut away.

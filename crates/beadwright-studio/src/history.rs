@@ -4,10 +4,17 @@
 #[derive(Debug, Clone)]
 pub struct History<T> {
     now: T,
-    past: Vec<T>,
-    future: Vec<T>,
-    /// What the last change was about, while it may still continue: one drag of a slider is one step.
-    open: Option<String>,
+    past: Vec<Step<T>>,
+    future: Vec<Step<T>>,
+    /// Whether the last change may still continue: one drag of a slider is one step.
+    open: bool,
+}
+
+/// A step, with the value on its other side.
+#[derive(Debug, Clone)]
+struct Step<T> {
+    about: String,
+    value: T,
 }
 
 /// Maximum number of steps that are kept.
@@ -16,7 +23,7 @@ const STEPS: usize = 200;
 impl<T: Clone + PartialEq> History<T> {
     /// A value without a history.
     pub fn new(now: T) -> Self {
-        Self { now, past: Vec::new(), future: Vec::new(), open: None }
+        Self { now, past: Vec::new(), future: Vec::new(), open: false }
     }
 
     /// The value.
@@ -29,35 +36,38 @@ impl<T: Clone + PartialEq> History<T> {
         if next == self.now {
             return false;
         }
-        let goes_on = self.open.as_deref() == Some(about);
-        let before = std::mem::replace(&mut self.now, next);
+        let goes_on = self.open && self.undoes() == Some(about);
+        let value = std::mem::replace(&mut self.now, next);
         if !goes_on {
-            self.past.push(before);
+            self.past.push(Step { about: about.to_owned(), value });
             self.past.drain(..self.past.len().saturating_sub(STEPS));
         }
         self.future.clear();
-        self.open = Some(about.to_owned());
+        self.open = true;
         true
     }
 
     /// Makes the next change a separate step.
     pub fn seal(&mut self) {
-        self.open = None;
+        self.open = false;
     }
 
     /// Undoes the last step; false if there is none.
     pub fn undo(&mut self) -> bool {
         self.seal();
-        let Some(before) = self.past.pop() else { return false };
-        self.future.push(std::mem::replace(&mut self.now, before));
-        true
+        Self::go(&mut self.now, &mut self.past, &mut self.future)
     }
 
     /// Redoes the last undone step; false if there is none.
     pub fn redo(&mut self) -> bool {
         self.seal();
-        let Some(after) = self.future.pop() else { return false };
-        self.past.push(std::mem::replace(&mut self.now, after));
+        Self::go(&mut self.now, &mut self.future, &mut self.past)
+    }
+
+    /// Takes the last of some steps, and keeps the way back.
+    fn go(now: &mut T, from: &mut Vec<Step<T>>, to: &mut Vec<Step<T>>) -> bool {
+        let Some(Step { about, value }) = from.pop() else { return false };
+        to.push(Step { about, value: std::mem::replace(now, value) });
         true
     }
 
@@ -66,13 +76,13 @@ impl<T: Clone + PartialEq> History<T> {
         self.past.len()
     }
 
-    /// Whether a step can be undone.
-    pub fn can_undo(&self) -> bool {
-        !self.past.is_empty()
+    /// What the step to be undone next is about.
+    pub fn undoes(&self) -> Option<&str> {
+        self.past.last().map(|step| &*step.about)
     }
 
-    /// Whether a step can be redone.
-    pub fn can_redo(&self) -> bool {
-        !self.future.is_empty()
+    /// What the step to be redone next is about.
+    pub fn redoes(&self) -> Option<&str> {
+        self.future.last().map(|step| &*step.about)
     }
 }

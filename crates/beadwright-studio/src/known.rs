@@ -3,21 +3,24 @@
 
 use crate::actions::Action;
 use crate::compared::Compared;
+use crate::distortion::Distorting;
 use crate::export::Export;
-use crate::form::Parsed;
+use crate::form::{self, Parsed};
 use crate::heat::Temperatures;
 use crate::history::History;
 use crate::jobs::{Answer, Ask, Job};
 use crate::level::Leans;
+use crate::listing::Listing;
 use crate::planner::Planner;
 use crate::project::Project;
 use crate::settings::{Settings, Store};
 use crate::state::PlanState;
 use crate::steps::Looked;
 use crate::text::Language;
+use crate::trial::Trial;
 use crate::view::{Mode, ViewState};
 use crate::view2d::View2d;
-use crate::view3d::{Pick, Plate, Style, View3d};
+use crate::view3d::{Colour, Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
 use beadwright::chart::Chart;
 use beadwright::fill::StrategyName;
@@ -57,6 +60,9 @@ pub(crate) struct Window {
     pub(crate) closing: bool,
 }
 
+/// What the step that opens a part is about.
+pub(crate) const OPENING: &str = "step-open";
+
 /// The open project.
 pub(crate) struct Open {
     pub(crate) project: History<Project>,
@@ -68,6 +74,10 @@ pub(crate) struct Open {
     pub(crate) kept: Project,
     /// Number of undo steps when it was opened.
     pub(crate) opened: usize,
+    /// Whether the user is being asked about an undo that would close the part.
+    pub(crate) asks_undo: bool,
+    /// The remedy that is tried.
+    pub(crate) trial: Option<Trial>,
     /// The project of a run that crashed.
     pub(crate) lost: Option<Project>,
     /// The profile as the form needs it, from the text that was parsed last.
@@ -83,6 +93,9 @@ pub(crate) struct Plans {
     pub(crate) other: Option<Other>,
 }
 
+/// The dialect of a program, and its lines, or a sentence on why it cannot be written.
+pub(crate) type Listed = (String, Result<Listing, String>);
+
 /// Other background work, and its results.
 #[derive(Default)]
 pub(crate) struct Jobs {
@@ -95,8 +108,15 @@ pub(crate) struct Jobs {
     pub(crate) doubted: bool,
     /// The steps of the strategy in the layer in view.
     pub(crate) looked: Looked,
+    /// Whether temperatures are computed for the second plan.
+    pub(crate) heat_of_other: bool,
     pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
     pub(crate) level_job: Option<Job<Leans>>,
+    pub(crate) listing_job: Option<Job<Listed>>,
+    /// The lines of the program.
+    pub(crate) listing: Option<Listed>,
+    /// How plate and part bend, computed or being computed.
+    pub(crate) distortion: Option<Distorting>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
     /// The cell that the results are for.
@@ -117,7 +137,9 @@ impl Jobs {
             || self.heat_job.is_some()
             || self.level_job.is_some()
             || self.scan_job.is_some()
-            || self.scan_wanted.is_some();
+            || self.listing_job.is_some()
+            || self.scan_wanted.is_some()
+            || self.distortion.as_ref().is_some_and(|distortion| distortion.progress().is_some());
         !computes && !self.looked.is_busy()
     }
 }
@@ -179,6 +201,26 @@ impl<'a> Known<'a> {
         self.open.project.now()
     }
 
+    /// The change that is tried, as long as nothing else is changed.
+    pub(crate) fn trial(self) -> Option<&'a Trial> {
+        self.open.trial.as_ref().filter(|trial| trial.tried == *self.project())
+    }
+
+    /// A value of the profile, as in TOML; `None` where the profile does not set it.
+    pub(crate) fn value_now(self, key: &str) -> Option<String> {
+        form::value(&self.parsed()?.values, key).map(|value| value.to_string())
+    }
+
+    /// What a step of the project is called, from what it is about: a key of the profile, or of a text.
+    pub(crate) fn step(self, about: &str) -> String {
+        let (language, name) = (self.language(), about.rsplit('.').next().unwrap_or(about));
+        match language.find(about) {
+            Some(text) => text.to_owned(),
+            None if form::BASIC.contains(&about) => language.word("basic", about),
+            None => language.word("name", name),
+        }
+    }
+
     /// The profile as its form needs it.
     pub(crate) fn parsed(self) -> Option<Rc<Parsed>> {
         self.open.parsed.clone()
@@ -212,17 +254,33 @@ impl<'a> Known<'a> {
         Some(Pick { layer, pass, segment: beads.segments_of(piece).start })
     }
 
+    /// The values at the two ends of the colours: those chosen by hand, or else the least and the largest of all plans in view.
+    pub(crate) fn range(self, view: &ViewState) -> Option<(f64, f64)> {
+        if let Some((colour, [low, high])) = view.range
+            && colour == view.colour
+        {
+            return Some((low, high));
+        }
+        let other = self.plans.other.as_ref().filter(|_| view.mode == Mode::Compare);
+        let plans = [Some(&self.plans.own), other.map(|other| &other.plan)];
+        let ranges = plans.into_iter().flatten().filter_map(|plan| plan.scene.value_range(view.colour));
+        ranges.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
+    }
+
     /// What the 3-D view shows.
     pub(crate) fn style(self, view: &ViewState) -> Style {
         let inner = view.scan && self.scan().is_some() || view.stock && self.has_stock();
-        let scan = inner && view.mode == Mode::Solid && !view.laying;
-        let arm = self.arm(view);
+        let bent = self.bent(view).is_some();
+        let scan = inner && view.mode == Mode::Solid && !view.laying && !bent;
+        let arm = self.arm(view).filter(|_| !bent);
         let at_arm = self.torch_place(view).filter(|_| arm.is_some()).map(|place| place.torch);
         let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
         Style {
-            colour: view.colour,
+            colour: if bent { Colour::Movement } else { view.colour },
+            range: self.range(view).filter(|_| !bent),
             mesh: view.mesh || view.laying,
             scan,
+            bent: bent && view.plate,
             travels: view.show.travels && !scan,
             starts: view.show.starts && !scan,
             marks_from: if view.all_marks { 0 } else { view.last },
@@ -231,7 +289,7 @@ impl<'a> Known<'a> {
             layers: view.first..=view.last,
             segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
             section: view.section,
-            plate: self.plate().filter(|_| view.plate),
+            plate: self.plate().filter(|_| view.plate && !bent),
             torch: view.torch.or(at_arm),
             arm: arm.map(|arm| arm.links).unwrap_or_default(),
             highlight: view.chosen.and_then(|chosen| self.pick(chosen)),

@@ -10,9 +10,12 @@
 //! | [`project`], [`history`] | what the user works on; undo and redo |
 //! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
 //! | [`jobs`], [`heat`], [`level`], [`steps`] | other background work: reach, file dialogs; temperatures; how far layers lean; the steps of strategies |
+//! | [`distortion`], `bending` | how plate and part bend as they cool |
 //! | [`compared`], `scan` | a scan of the built part compared with the part |
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
+//! | [`listing`] | the lines of a program, and where the torch is at each of them |
+//! | [`shares`] | what the time of a program is spent on |
 //! | [`arm`], [`holding`] | the robot's pose with the torch at a place; how the part is held there |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
@@ -21,6 +24,7 @@
 //! | `files`, [`export`] | opening and writing files |
 //! | [`disk`] | where files lie: on the disk; in a browser, what the user has handed over, and downloads |
 //! | `web` | the page in a browser |
+//! | [`remedy`], `trial` | what usually helps against a finding; a remedy that is tried |
 //! | [`actions`] | what the user can do; menus and keys |
 //! | [`thumbnail`] | pictures of the examples |
 //! | [`settings`], [`text`], [`fonts`], [`theme`] | what is remembered; texts; fonts; colours |
@@ -29,8 +33,10 @@ mod act;
 pub mod actions;
 mod app;
 pub mod arm;
+mod bending;
 pub mod compared;
 pub mod disk;
+pub mod distortion;
 pub mod export;
 mod files;
 pub mod fonts;
@@ -41,18 +47,22 @@ pub mod holding;
 pub mod jobs;
 mod known;
 pub mod level;
+pub mod listing;
 mod panels;
 pub mod planner;
 mod process;
 pub mod project;
+pub mod remedy;
 mod scan;
 pub mod settings;
+pub mod shares;
 pub mod state;
 pub mod steps;
 pub mod studio;
 pub mod text;
 pub mod theme;
 pub mod thumbnail;
+mod trial;
 pub mod view;
 pub mod view2d;
 pub mod view3d;

@@ -1,7 +1,7 @@
 //! What is known of a plan, put together from the planner's events.
 
 use crate::planner::{Event, Failure};
-use crate::view3d::{Scanned, Scene};
+use crate::view3d::{Colour, Scanned, Scene};
 use beadwright::Finding;
 use beadwright::check;
 use beadwright::deposit::{Figures, Judgement};
@@ -10,6 +10,7 @@ use beadwright::layer::Layer;
 use beadwright::model::{Mesh, Part};
 use beadwright::plan::{Header, Summary};
 use beadwright::profile::Profile;
+use beadwright::report::rows;
 use beadwright::task::Stage;
 use std::sync::Arc;
 
@@ -45,6 +46,9 @@ pub struct PlanState {
     /// How much of what is in view already comes from the last request.
     received: Received,
 }
+
+/// Figures of a plan: their names, and their values.
+pub type Rows = Vec<(&'static str, String)>;
 
 /// How much of what is in view comes from the present request; the rest is still from the previous one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -96,6 +100,25 @@ impl PlanState {
     /// written to files.
     pub fn is_of_last_request(&self) -> bool {
         self.received == Received::Layers
+    }
+
+    /// Its totals as far as they are known.
+    pub fn totals(&self) -> Rows {
+        let metrics = self.summary.as_ref().map(|summary| &summary.metrics);
+        let totals = metrics.map(rows::totals).into_iter().flatten();
+        // Sliders and plots count all layers.
+        let all = self.layers.len();
+        let totals = totals.map(|(name, value)| match metrics {
+            Some(metrics) if name == "layers" && all > metrics.layers => (name, format!("{value} / {all}")),
+            _ => (name, value),
+        });
+        totals.chain(self.total.as_ref().map(rows::deposit).into_iter().flatten()).collect()
+    }
+
+    /// Whether its temperatures could be computed, but are not.
+    pub fn is_cold(&self) -> bool {
+        let planned = self.summary.is_some() && self.is_of_last_request();
+        planned && self.scene.value_range(Colour::Temperature).is_none()
     }
 
     /// Takes in an event.

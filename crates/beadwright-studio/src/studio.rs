@@ -4,7 +4,7 @@ pub use crate::known::Message;
 
 use crate::form::Parsed;
 use crate::history::History;
-use crate::known::{Jobs, Known, Open, Other, Plans, View, Window};
+use crate::known::{Jobs, Known, OPENING, Open, Other, Plans, View, Window};
 use crate::planner::{Planner, Urgency};
 use crate::project::Project;
 use crate::settings::Store;
@@ -61,6 +61,8 @@ impl Studio {
                 kept: Project::default(),
                 opened: 0,
                 lost: None,
+                asks_undo: false,
+                trial: None,
                 parsed: None,
                 refused: None,
             },
@@ -127,6 +129,11 @@ impl Studio {
         &self.plans.own
     }
 
+    /// The plan that it is compared with.
+    pub fn other_plan(&self) -> Option<&PlanState> {
+        self.plans.other.as_ref().map(|other| &other.plan)
+    }
+
     /// The messages in the window.
     pub fn messages(&self) -> &[Message] {
         &self.window.messages
@@ -163,7 +170,7 @@ impl Studio {
     /// Switches to another project.
     pub(crate) fn begin(&mut self, project: Project) {
         self.open.project.seal();
-        self.open.project.set("open", project);
+        self.open.project.set(OPENING, project);
         self.open.project.seal();
         self.open.opened = self.open.project.steps();
         self.open.saved = self.open.project.now().clone();
@@ -232,7 +239,8 @@ impl Studio {
         // Pending answers are about the previous plan.
         (self.jobs.reach, self.jobs.reach_job) = (None, None);
         self.jobs.looked.forget();
-        (self.jobs.heat_job, self.jobs.level_job) = (None, None);
+        (self.jobs.listing, self.jobs.listing_job) = (None, None);
+        (self.jobs.heat_job, self.jobs.level_job, self.jobs.distortion) = (None, None, None);
         if self.project().source.is_none() {
             // Undo has led back to the empty window.
             self.plans.planner.cancel();
@@ -252,6 +260,8 @@ impl Studio {
 
     /// Plans the part with a second strategy too, shown next to the first; none removes the second plan.
     pub fn compare_with(&mut self, strategy: Option<StrategyName>) {
+        // Pending temperatures may be those of another plan.
+        self.jobs.heat_job = None;
         let Some(strategy) = strategy else {
             self.plans.other = None;
             return;

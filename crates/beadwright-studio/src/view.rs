@@ -2,6 +2,7 @@
 
 use crate::view2d::Show;
 use crate::view3d::{Colour, Grip, Scene, Section, Stance};
+use beadwright::distortion::Clamps;
 use glam::{DVec2, DVec3};
 
 /// Which view fills the window.
@@ -26,8 +27,23 @@ pub enum Side {
     Findings,
     /// Curves.
     Plots,
+    /// The lines of the program.
+    Program,
     /// What can be exported.
     Export,
+}
+
+/// How plate and part are shown as they bend.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bend {
+    /// Whether they are shown bent.
+    pub shown: bool,
+    /// Where clamps hold the plate.
+    pub clamps: Clamps,
+    /// Whether they are shown on the clamps, not released.
+    pub clamped: bool,
+    /// How many times as large as computed the movement is drawn; as suits the part while nobody has chosen it.
+    pub times: Option<f64>,
 }
 
 /// The marked place of a finding.
@@ -66,6 +82,8 @@ pub struct ViewState {
     pub torch: Option<Stance>,
     /// What the colours mean.
     pub colour: Colour,
+    /// The values at the two ends of the colours that were chosen by hand, and for which colours.
+    pub range: Option<(Colour, [f64; 2])>,
     /// Whether the part is shown.
     pub mesh: bool,
     /// Whether the scan is shown instead of the beads, where there is one.
@@ -78,6 +96,8 @@ pub struct ViewState {
     pub parallel: bool,
     /// Whether the plate below the part is shown.
     pub plate: bool,
+    /// How plate and part are shown as they bend.
+    pub bend: Bend,
     /// Whether the robot's arm is shown.
     pub robot: bool,
     /// Whether the next click in 3-D chooses the face on which the part is laid.
@@ -96,6 +116,8 @@ pub struct ViewState {
     pub pin: Option<Pin>,
     /// The chosen bead: layer, pass, piece.
     pub chosen: Option<(usize, usize, usize)>,
+    /// The line of the program that was last brought into view.
+    pub listed: Option<usize>,
     /// The dialect to write.
     pub dialect: String,
     /// The folder to write into; if empty, the user is asked for one.
@@ -129,12 +151,14 @@ impl Default for ViewState {
             seconds: 0.0,
             torch: None,
             colour: Colour::Kind,
+            range: None,
             mesh: true,
             scan: true,
             stock: false,
             all_marks: false,
             parallel: false,
             plate: true,
+            bend: Bend::default(),
             robot: false,
             laying: false,
             placing: false,
@@ -144,6 +168,7 @@ impl Default for ViewState {
             show: Show::default(),
             pin: None,
             chosen: None,
+            listed: None,
             dialect: "krl".to_owned(),
             folder: String::new(),
             cell: beadwright::robot::cell::BUILT_IN[0].0.to_owned(),
@@ -164,7 +189,7 @@ impl ViewState {
         let (laying, placing, grip) = (false, false, None);
         let (wanted, left, chosen, torch, section) = (None, None, None, None, None);
         let shown = Self { wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
-        *self = Self { laying, placing, grip, pin: None, ..shown };
+        *self = Self { laying, placing, grip, pin: None, bend: Bend::default(), range: None, ..shown };
     }
 
     /// Keeps the range within the existing layers.
@@ -215,8 +240,25 @@ impl ViewState {
 
     /// Advances the torch after `passed` seconds of real time; it stops at the end of the last layer.
     pub fn advance(&mut self, passed: f64, scene: &Scene) {
-        let total = scene.total_seconds();
-        self.seconds = (self.seconds + passed * self.rate).min(total);
+        self.go_to(self.seconds + passed * self.rate, scene);
+        self.playing = self.torch.is_some() && self.seconds < scene.total_seconds();
+    }
+
+    /// The time that what is shown has reached, s from the start of the program.
+    pub fn now(&self, scene: &Scene) -> f64 {
+        if self.torch.is_some() {
+            return self.seconds;
+        }
+        let Some(layer) = scene.layer(self.last) else { return 0.0 };
+        let shown = (self.progress * layer.len() as f64).round() as usize;
+        let within =
+            if shown < layer.len() { layer.times(shown).map_or(0.0, |(begin, _)| begin) } else { layer.seconds() };
+        scene.seconds_before(self.last) + within
+    }
+
+    /// Takes the torch to a time, s from the start of the program, and stops it there.
+    pub fn go_to(&mut self, seconds: f64, scene: &Scene) {
+        self.seconds = seconds.min(scene.total_seconds());
         let Some(at) = scene.at_time(self.seconds) else {
             self.playing = false;
             return;
@@ -225,7 +267,6 @@ impl ViewState {
         self.look_at(at.layer);
         self.progress = at.segment as f64 / pieces as f64;
         self.torch = Some(at.torch);
-        self.playing = self.seconds < total;
     }
 
     /// Moves one layer up or down.

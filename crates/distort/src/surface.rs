@@ -10,13 +10,24 @@ const FACES: [[usize; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6,
 impl Distortion {
     /// Faces between metal and air, each with its four nodes, counter-clockwise seen from the air.
     pub fn surface(&self) -> Vec<[usize; 4]> {
-        let mut there = vec![false; self.grid.voxels()];
-        self.voxels.iter().for_each(|&voxel| there[voxel] = true);
-        let open = |voxel: usize, face: usize| !beside(&self.grid, voxel, face).is_some_and(|other| there[other]);
-        let faces = self.voxels.iter().flat_map(|&voxel| (0..FACES.len()).map(move |face| (voxel, face)));
-        let open = faces.filter(|&(voxel, face)| open(voxel, face));
-        open.map(|(voxel, face)| FACES[face].map(|corner| self.grid.corners(voxel)[corner])).collect()
+        faces(&self.grid, &self.voxels)
     }
+
+    /// Faces of the plate by itself, likewise: those that the part covers are among them.
+    pub fn plate_surface(&self) -> Vec<[usize; 4]> {
+        let plate = self.voxels.iter().zip(&self.born).filter(|(_, born)| **born == 0);
+        faces(&self.grid, &plate.map(|(&voxel, _)| voxel).collect::<Vec<_>>())
+    }
+}
+
+/// Faces of a body of these voxels that none of them covers.
+fn faces(grid: &Grid, voxels: &[usize]) -> Vec<[usize; 4]> {
+    let mut there = vec![false; grid.voxels()];
+    voxels.iter().for_each(|&voxel| there[voxel] = true);
+    let open = |voxel: usize, face: usize| !beside(grid, voxel, face).is_some_and(|other| there[other]);
+    let faces = voxels.iter().flat_map(|&voxel| (0..FACES.len()).map(move |face| (voxel, face)));
+    let open = faces.filter(|&(voxel, face)| open(voxel, face));
+    open.map(|(voxel, face)| FACES[face].map(|corner| grid.corners(voxel)[corner])).collect()
 }
 
 /// The voxel on the other side of a face.

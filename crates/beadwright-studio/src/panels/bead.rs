@@ -1,5 +1,6 @@
 //! The chosen bead in one line, the same over every view.
 
+use super::clock::clock;
 use super::place;
 use crate::known::{Known, View};
 use crate::view::Mode;
@@ -47,10 +48,4 @@ fn figures(known: Known<'_>, view: &View<'_>) -> Option<Vec<String>> {
     ];
     figures.extend(scene.temperature(layer, pass).map(|degrees| format!("{degrees:.0} °C")));
     Some(figures)
-}
-
-/// A time as hours, minutes and seconds.
-fn clock(seconds: f64) -> String {
-    let whole = seconds.round() as u64;
-    format!("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
 }

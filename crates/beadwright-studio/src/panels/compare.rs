@@ -20,7 +20,10 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     let solid = view.state.compare_solid;
     if solid {
         ui.horizontal_wrapped(|ui| solid::bar(known, view, queue, ui));
-        ui.horizontal(|ui| solid::colours(known, view, queue, ui));
+        ui.horizontal_wrapped(|ui| {
+            solid::colours(known, view, queue, ui);
+            solid::legend(known, view, ui);
+        });
     } else {
         bar(known, view, ui);
     }
@@ -98,7 +101,7 @@ fn choose(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
 /// Totals of both plans side by side.
 pub(super) fn differences(known: Known<'_>, ui: &mut Ui) {
     let Some(other) = &known.plans.other else { return };
-    let (own, theirs) = (totals::rows_of(&known.plans.own), totals::rows_of(&other.plan));
+    let (own, theirs) = (known.plans.own.totals(), other.plan.totals());
     let names = [known.plans.own.header.as_ref().map_or("", |header| header.strategy.as_str()), other.strategy.name()];
     // As many tables side by side as fit leave more room for the views.
     const WIDTH: f32 = 400.0;

@@ -8,7 +8,8 @@ use beadwright::dialect;
 use beadwright::files::{METRICS, PLAN, REPORT};
 use eframe::egui::{Button, ComboBox, TextEdit, Ui};
 
-pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
+/// The dialect in which the program is written.
+pub(super) fn dialect(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
     ui.horizontal(|ui| {
         let label = ui.label(known.t("dialect"));
         let now = view.state.dialect.clone();
@@ -19,6 +20,10 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
         });
         combo.response.labelled_by(label.id);
     });
+}
+
+pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    dialect(known, view, ui);
     // A browser itself asks where downloads go.
     if cfg!(not(target_arch = "wasm32")) {
         let label = ui.label(known.t("folder"));

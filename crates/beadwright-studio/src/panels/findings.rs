@@ -1,7 +1,7 @@
 //! What the checks found; a click shows the place.
 
-use super::words;
-use crate::known::{Known, View};
+use super::{trial, words};
+use crate::known::{Known, Queue, View};
 use crate::view::{Mode, Pin};
 use beadwright::Finding;
 use beadwright::check::{self, Check};
@@ -17,7 +17,8 @@ const ROOM: f64 = 12.0;
 /// Maximum number of findings listed for one check.
 const LISTED: usize = 100;
 
-pub(super) fn show(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
+pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
+    trial::show(known, queue, ui);
     let own = &known.plans.own;
     match &own.findings {
         None => drop(ui.weak(known.t("findings-wait"))),
@@ -33,7 +34,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
             Severity::Note => visuals.weak_text_color(),
         };
         match check::by_name(finding.kind) {
-            Some(check) => checked(known, view, ui, check, findings, colour),
+            Some(check) => checked(known, view, queue, ui, check, findings, colour),
             None => {
                 let count = if finding.count > 1 { format!("{}, ", finding.count) } else { String::new() };
                 let title = format!("{} ({count}{})", finding.kind, known.t(word(finding.severity)));
@@ -50,7 +51,15 @@ fn word(severity: Severity) -> &'static str {
 }
 
 /// All that one check found.
-fn checked(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, check: &Check, findings: &[Finding], colour: Color32) {
+fn checked(
+    known: Known<'_>,
+    view: &mut View<'_>,
+    queue: &mut Queue,
+    ui: &mut Ui,
+    check: &Check,
+    findings: &[Finding],
+    colour: Color32,
+) {
     let found: Vec<&Finding> = findings.iter().filter(|finding| finding.kind == check.name).collect();
     let title = format!(
         "{} ({}, {})",
@@ -62,6 +71,9 @@ fn checked(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, check: &Check, fi
     let opened = title.default_open(true).show(ui, |ui| {
         for (key, text) in [("why", check.why), ("remedy", check.remedy)] {
             explained(known, ui.weak(format!("{}: {text}.", known.t(key))), check.name, text);
+        }
+        if let Some(first) = found.first() {
+            trial::offer(known, queue, ui, first);
         }
         let groups = grouped(&found);
         for group in groups.iter().take(LISTED) {

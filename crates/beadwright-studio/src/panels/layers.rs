@@ -1,5 +1,6 @@
 //! Below the views: which layers are shown, how much of the highest, and the playing torch.
 
+use super::clock;
 use crate::actions::Action;
 use crate::known::{Known, Queue, View};
 use crate::view::Mode;
@@ -13,6 +14,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     advance(known, view, ui);
     ui.horizontal(|ui| range(known, view, ui, layers));
     ui.horizontal(|ui| torch(known, view, queue, ui));
+    clock::show(known, view, ui);
 }
 
 fn range(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, layers: usize) {
@@ -67,7 +69,7 @@ fn pass(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
 }
 
 /// A slider with its label, in `1 / share` of the remaining width; returns whether it was moved.
-fn slider(ui: &mut Ui, text: &str, share: usize, slider: Slider<'_>) -> bool {
+pub(super) fn slider(ui: &mut Ui, text: &str, share: usize, slider: Slider<'_>) -> bool {
     /// Room for the number after it.
     const NUMBER: f32 = 70.0;
     let room = ui.available_width() / share as f32;

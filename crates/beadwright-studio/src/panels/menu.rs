@@ -51,19 +51,30 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
 fn items(known: Known<'_>, queue: &mut Queue, ui: &mut Ui, wanted: &[Action]) {
     for entry in wanted.iter().filter_map(actions::find) {
         let enabled = match entry.action {
-            Action::Undo => known.open.project.can_undo(),
-            Action::Redo => known.open.project.can_redo(),
+            Action::Undo => known.open.project.undoes().is_some(),
+            Action::Redo => known.open.project.redoes().is_some(),
             Action::ExportProgram | Action::Play => known.plans.own.summary.is_some(),
             Action::Save | Action::SaveAs | Action::Plan | Action::PlaceTool => known.project().source.is_some(),
             Action::Stop => known.plans.own.is_busy(),
             _ => true,
         };
         let key = entry.key.map(|key| ui.ctx().format_shortcut(&key)).unwrap_or_default();
-        if ui.add_enabled(enabled, Button::new(known.t(entry.text)).shortcut_text(key)).clicked() {
+        let text = named(known, &entry.action, known.t(entry.text));
+        if ui.add_enabled(enabled, Button::new(text).shortcut_text(key)).clicked() {
             queue.push(entry.action.clone());
             ui.close();
         }
     }
+}
+
+/// The text of an entry; undo and redo say of what.
+fn named(known: Known<'_>, action: &Action, text: &str) -> String {
+    let about = match action {
+        Action::Undo => known.open.project.undoes(),
+        Action::Redo => known.open.project.redoes(),
+        _ => None,
+    };
+    about.map_or_else(|| text.to_owned(), |about| format!("{text}: {}", known.step(about)))
 }
 
 /// A scan can be opened once there is a part to compare it with.

@@ -3,7 +3,9 @@
 mod basic;
 mod bead;
 mod centre;
+mod clock;
 mod compare;
+mod distortion;
 mod export;
 mod findings;
 mod layers;
@@ -14,6 +16,7 @@ mod place;
 mod placement;
 mod plots;
 mod process;
+mod program;
 mod questions;
 mod robot;
 mod scan;
@@ -22,6 +25,7 @@ pub(crate) mod solid;
 mod start;
 mod stock;
 mod totals;
+mod trial;
 mod words;
 
 use crate::known::{Known, Queue, View};
@@ -81,8 +85,13 @@ fn room(ui: &Ui, text: String) -> Vec2 {
 }
 
 fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
-    let tabs =
-        [(Side::Totals, "totals"), (Side::Findings, "findings"), (Side::Plots, "plots"), (Side::Export, "export")];
+    let tabs = [
+        (Side::Totals, "totals"),
+        (Side::Findings, "findings"),
+        (Side::Plots, "plots"),
+        (Side::Program, "program"),
+        (Side::Export, "export"),
+    ];
     ui.horizontal_wrapped(|ui| {
         for (side, key) in tabs {
             let count = if side == Side::Findings { known.plans.own.found() } else { 0 };
@@ -95,10 +104,16 @@ fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
         }
     });
     ui.separator();
+    if view.state.side == Side::Program {
+        // It scrolls by itself, since only the lines in view are laid out.
+        program::show(known, view, queue, ui);
+        return;
+    }
     scrolled(ui, |ui| match view.state.side {
         Side::Totals => totals::show(known, view, ui),
-        Side::Findings => findings::show(known, view, ui),
+        Side::Findings => findings::show(known, view, queue, ui),
         Side::Plots => plots::show(known, view, queue, ui),
+        Side::Program => {}
         Side::Export => export::show(known, view, queue, ui),
     });
 }

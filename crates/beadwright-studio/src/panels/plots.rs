@@ -31,16 +31,21 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mu
         let figures = known.plans.own.judgements.iter().enumerate();
         figures.map(|(i, judgement)| [i as f64 + 1.0, value(&judgement.figures)]).collect()
     };
-    let label = curve(ui, known.t("plot-void"), x, none, judged(|f| f.void_percent()));
+    let limits = known.plans.own.profile.as_ref().map(|profile| &profile.check);
+    let most = |limit: Option<f64>| limit.map(|limit| (limit, known.t("plot-limit")));
+    let label =
+        curve(ui, known.t("plot-void"), [x, none], judged(|f| f.void_percent()), most(limits.map(|l| l.max_void)));
     words::explained(known, label, "void");
-    let label = curve(ui, known.t("plot-overfill"), x, none, judged(|f| f.overfill_percent()));
+    let overfill = most(limits.map(|l| l.max_overfill));
+    let label = curve(ui, known.t("plot-overfill"), [x, none], judged(|f| f.overfill_percent()), overfill);
     words::explained(known, label, "overfill");
     let planned = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
         (0..known.plans.own.layers.len()).map(|i| [i as f64 + 1.0, value(i)]).collect()
     };
-    curve(ui, known.worded("plot-starts"), x, none, planned(&|i| known.plans.own.layers[i].passes.len() as f64));
+    let starts = planned(&|i| known.plans.own.layers[i].passes.len() as f64);
+    curve(ui, known.worded("plot-starts"), [x, none], starts, None);
     let seconds = |i: usize| known.plans.own.scene.layer(i).map_or(0.0, |beads| beads.seconds());
-    curve(ui, known.t("plot-time"), x, none, planned(&seconds));
+    curve(ui, known.t("plot-time"), [x, none], planned(&seconds), None);
     ui.separator();
     beads(known, queue, ui);
     ui.separator();
@@ -73,9 +78,15 @@ fn drawn(ui: &mut Ui, id: &str, found: &page::Plot) {
     });
 }
 
-/// A curve under its title, which is returned.
-fn curve(ui: &mut Ui, title: &'static str, x: &'static str, none: &'static str, points: Vec<[f64; 2]>) -> Response {
-    let label = ui.label(title);
+/// A curve under its title, which is returned; with a limit, and what it is called, as a dashed line.
+fn curve(
+    ui: &mut Ui,
+    title: &'static str,
+    [x, none]: [&'static str; 2],
+    points: Vec<[f64; 2]>,
+    limit: Option<(f64, &str)>,
+) -> Response {
+    let label = ui.label(limit.map_or_else(|| title.to_owned(), |(limit, name)| format!("{title}; {name} {limit} %")));
     if points.is_empty() {
         ui.weak(none);
         return label;
@@ -85,6 +96,9 @@ fn curve(ui: &mut Ui, title: &'static str, x: &'static str, none: &'static str, 
     let axis = AxisHints::new_x().label(x).label_spacing(SPACING);
     Plot::new(title).height(HEIGHT).custom_x_axes(vec![axis]).include_y(0.0).allow_scroll(false).show(ui, |plot| {
         plot.line(Line::new(title, points));
+        if let Some((limit, name)) = limit {
+            plot.hline(HLine::new(name, limit).style(LineStyle::dashed_loose()));
+        }
     });
     label
 }

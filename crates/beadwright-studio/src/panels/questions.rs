@@ -18,6 +18,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
         _ => {}
     }
     closing(known, queue, ui);
+    undoing(known, queue, ui);
     doubted(known, view, queue, ui);
     path(known, view, queue, ui);
     keys(known, view, ui);
@@ -70,6 +71,23 @@ fn closing(known: Known<'_>, queue: &mut Queue, ui: &Ui) {
             }
             if ui.button(known.t("go-on")).clicked() {
                 queue.push(Action::GoOn);
+            }
+        });
+    });
+}
+
+/// Asks before an undo closes the part.
+fn undoing(known: Known<'_>, queue: &mut Queue, ui: &Ui) {
+    if !known.open.asks_undo {
+        return;
+    }
+    window(known.t("undoing-title")).show(ui.ctx(), |ui| {
+        ui.label(known.t("undoing-text"));
+        ui.horizontal(|ui| {
+            for (text, goes_on) in [("close-part", true), ("cancel", false)] {
+                if ui.button(known.t(text)).clicked() {
+                    queue.push(Action::DecideUndo(goes_on));
+                }
             }
         });
     });

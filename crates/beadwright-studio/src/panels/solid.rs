@@ -1,13 +1,15 @@
 //! The 3-D view with its bar and its legend.
 
-use super::{bead, place, robot, scan, section, stock};
+use super::{bead, distortion, place, robot, scan, section, stock};
 use crate::actions::Action;
 use crate::known::{Known, Queue, View};
+use crate::view::Mode;
 use crate::view3d::{Colour, Pick, Style, face, palette};
 use beadwright::model::Placement;
 use beadwright::robot::Frame;
-use eframe::egui::{Color32, ComboBox, Rect, Sense, Ui, vec2};
+use eframe::egui::{Color32, ComboBox, DragValue, Rect, Role, Sense, Ui, WidgetInfo, vec2};
 use glam::DVec3;
+use std::ops::RangeInclusive;
 
 /// What the colours can show, with their texts.
 const COLOURS: [(Colour, &str); 8] = [
@@ -24,16 +26,21 @@ const COLOURS: [(Colour, &str); 8] = [
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| bar(known, view, queue, ui));
     ui.horizontal_wrapped(|ui| {
-        colours(known, view, queue, ui);
-        legend(known, view, ui);
-        ui.separator();
+        // A bent shape has the colours of its movement, with a legend of its own.
+        if known.bent(view.state).is_none() {
+            colours(known, view, queue, ui);
+            legend(known, view, ui);
+            ui.separator();
+        }
         section::show(known, view, ui);
         ui.separator();
         place::switch(known, view, ui);
+        distortion::switch(known, view, queue, ui);
     });
     bead::show(known, view, ui);
     robot::joints(known, view, queue, ui);
     scan::show(known, view, queue, ui);
+    distortion::show(known, view, queue, ui);
     stock::show(known, view, ui);
     let (style, label) = (known.style(view.state), known.t("view-3d-label"));
     view.solid.around = place::around(known, view);
@@ -103,15 +110,16 @@ pub(super) fn colours(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, 
     lean(known, view, queue, ui);
 }
 
-/// Has temperatures computed when they are to be shown and the plan has none.
+/// Has temperatures computed when they are to be shown and a plan in view has none.
 fn warm(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
     if known.jobs.heat_job.is_some() {
         ui.spinner();
         ui.weak(known.t("stage-heat"));
         return;
     }
-    let has = || known.plans.own.scene.value_range(Colour::Temperature).is_some();
-    if view.state.colour == Colour::Temperature && known.plans.own.summary.is_some() && !has() {
+    let other = known.plans.other.as_ref().filter(|_| view.state.mode == Mode::Compare);
+    let cold = known.plans.own.is_cold() || other.is_some_and(|other| other.plan.is_cold());
+    if view.state.colour == Colour::Temperature && cold {
         queue.push(Action::Heat);
     }
 }
@@ -128,8 +136,8 @@ fn lean(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
     }
 }
 
-/// What the colours mean: a patch for each kind of pass in the plan, or a scale with its ends.
-fn legend(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
+/// What the colours mean: a patch for each kind of pass in the plan, or a scale whose ends can be changed.
+pub(super) fn legend(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
     let dark = !known.window.settings.light;
     if view.state.colour == Colour::Kind {
         let passes = || known.plans.own.layers.iter().flat_map(|layer| &layer.passes);
@@ -141,7 +149,7 @@ fn legend(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
         }
         return;
     }
-    let Some((low, high)) = known.plans.own.scene.value_range(view.state.colour) else {
+    let Some((low, high)) = known.range(view.state) else {
         ui.weak(known.t("no-values"));
         return;
     };
@@ -154,9 +162,25 @@ fn legend(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
         Colour::HeightError => known.t("unit-bead-heights"),
         _ => "",
     };
-    ui.label(format!("{low:.1}{unit}"));
-    scale(ui, |part| palette::at(view.state.colour, part, dark));
-    ui.label(format!("{high:.1}{unit}"));
+    let (colour, mut ends) = (view.state.colour, [low, high]);
+    // Ends never meet: the colours between them would have no values.
+    let least = 1e-3 * (high - low).abs().max(1e-3);
+    let end = |ui: &mut Ui, value: &mut f64, text: &str, range: RangeInclusive<f64>| {
+        let field = DragValue::new(value).range(range).speed(0.01 * (high - low)).fixed_decimals(1).suffix(unit);
+        let response = ui.add(field).on_hover_text(text);
+        response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, text));
+        response.changed()
+    };
+    let lowest = end(ui, &mut ends[0], known.t("range-low"), f64::NEG_INFINITY..=high - least);
+    scale(ui, |part| palette::at(colour, part, dark));
+    let highest = end(ui, &mut ends[1], known.t("range-high"), low + least..=f64::INFINITY);
+    if lowest || highest {
+        view.state.range = Some((colour, ends));
+    }
+    let chosen = view.state.range.is_some_and(|(of, _)| of == colour);
+    if chosen && ui.small_button("↺").on_hover_text(known.t("range-reset")).clicked() {
+        view.state.range = None;
+    }
 }
 
 /// A strip of all colours of a scale; `colour_at` gives the colour at a fraction of it, 0 to 1.

@@ -3,9 +3,7 @@
 use super::words;
 use crate::known::{Known, View};
 use crate::state::PlanState;
-use beadwright::deposit::Figures;
-use beadwright::metrics::Metrics;
-use beadwright::report::rows;
+use crate::theme;
 use eframe::egui::{Grid, Ui};
 
 pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
@@ -15,11 +13,15 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
         ui.label(format!("{}: {:.1} × {:.1} × {:.1} mm", known.t("size"), size.x, size.y, size.z));
         ui.separator();
     }
-    let rows = rows_of(&known.plans.own);
+    let rows = known.plans.own.totals();
     Grid::new("totals").num_columns(2).spacing([24.0, 4.0]).striped(true).show(ui, |ui| {
         for (name, value) in &rows {
             named(known, ui, name);
-            ui.label(value);
+            match keeps_limits(&known.plans.own, name) {
+                Some(true) => ui.colored_label(theme::good(ui.visuals().dark_mode), format!("✔ {value}")),
+                Some(false) => ui.colored_label(ui.visuals().error_fg_color, format!("✖ {value}")),
+                None => ui.label(value),
+            };
             ui.end_row();
         }
     });
@@ -27,18 +29,16 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
     chosen(known, view, ui);
 }
 
-/// The rows known so far for a plan.
-pub(super) fn rows_of(plan: &PlanState) -> Vec<(&'static str, String)> {
-    let metrics: Option<&Metrics> = plan.summary.as_ref().map(|summary| &summary.metrics);
-    let figures: Option<&Figures> = plan.total.as_ref();
-    let totals = metrics.map(rows::totals).into_iter().flatten();
-    // Sliders and plots count all layers.
-    let all = plan.layers.len();
-    let totals = totals.map(|(name, value)| match metrics {
-        Some(metrics) if name == "layers" && all > metrics.layers => (name, format!("{value} / {all}")),
-        _ => (name, value),
-    });
-    totals.chain(figures.map(rows::deposit).into_iter().flatten()).collect()
+/// Whether what a row says keeps the limits of the checks, where they have any.
+fn keeps_limits(plan: &PlanState, name: &str) -> Option<bool> {
+    let (figures, limits) = (plan.total.as_ref()?, &plan.profile.as_ref()?.check);
+    match name {
+        "void / low area" => Some(figures.void_percent() <= limits.max_void),
+        "overfill / outside" => {
+            Some(figures.overfill_percent() <= limits.max_overfill && figures.outside_percent() <= limits.max_outside)
+        }
+        _ => None,
+    }
 }
 
 /// A row's name, with its meaning as a hint.
@@ -50,7 +50,7 @@ pub(super) fn named(known: Known<'_>, ui: &mut Ui, name: &'static str) {
 fn name_of(known: Known<'_>, name: &'static str) -> &'static str {
     let key = format!("total {name}");
     let printed = known.prints().then(|| known.language().find(&format!("fdm {key}"))).flatten();
-    printed.or_else(|| known.language().find(&key)).unwrap_or(name)
+    printed.or_else(|| known.language().find(&key)).unwrap_or_else(|| known.t(name))
 }
 
 fn chosen(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {

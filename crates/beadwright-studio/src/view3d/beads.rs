@@ -75,6 +75,11 @@ impl Bead {
         Stance { at: self.from().as_dvec3().lerp(self.to().as_dvec3(), part), up: self.up().as_dvec3() }
     }
 
+    /// A bead like this one from one place to another, not mitred.
+    fn between(&self, from: Vec3, to: Vec3) -> Self {
+        Self { from: from.into(), to: to.into(), width: self.width(), height: self.height(), up: self.up }
+    }
+
     /// The ends of the line in its middle, mm.
     pub(super) fn middle_line(&self) -> [Vec3; 2] {
         let below = self.up() * (self.height() / 2.0);
@@ -163,20 +168,7 @@ impl LayerBeads {
     /// A layer as the torch runs it, with the wait before it.
     pub fn of(layer: &Layer, torch: &mut Torch) -> Self {
         let count = layer.passes.iter().map(|p| p.points.len()).sum();
-        let mut beads = Self {
-            id: fresh_id(),
-            beads: Vec::with_capacity(count),
-            speeds: Vec::with_capacity(count),
-            ends: Vec::with_capacity(count),
-            pieces: Vec::new(),
-            passes: Vec::with_capacity(layer.passes.len()),
-            caps: Vec::new(),
-            cap_segments: Vec::new(),
-            rough: Vec::new(),
-            rough_segments: Vec::new(),
-            boxes: Vec::new(),
-            seconds: 0.0,
-        };
+        let mut beads = Self::empty(count);
         // The rise at the end of the layer before, in that layer's lie.
         let begins = layer.passes.first().is_some_and(|pass| pass.start().is_some());
         let before = torch.at().filter(|_| begins).map(|at| Lie(torch.sheet()).stance(at));
@@ -237,6 +229,75 @@ impl LayerBeads {
         let (kind, travel) = (pass.kind, Lie(torch.sheet()).line(&travel));
         let (temperature, end) = (None, self.seconds);
         self.passes.push(PassSpan { kind, temperature, segments, travel_start, arrival, arc_start, end, travel });
+    }
+
+    /// The same layer in segments no longer than this, mm.
+    pub(super) fn divided(&self, longest: f32) -> Self {
+        let mut divided = Self::empty(self.len());
+        for pass in &self.passes {
+            let first = divided.len();
+            for i in pass.segments.clone() {
+                let (bead, (begin, end)) = (self.beads[i], self.times(i).unwrap_or_default());
+                let (from, to) = (bead.from(), bead.to());
+                let parts = (from.distance(to) / longest).ceil().max(1.0) as usize;
+                for k in 1..=parts {
+                    let [before, after] = [k - 1, k].map(|k| k as f32 / parts as f32);
+                    let at = |part: f32| if part < 1.0 { from.lerp(to, part) } else { to };
+                    divided.beads.push(bead.between(at(before), at(after)));
+                    divided.ends.push((begin + (end - begin) * f64::from(after)) as f32);
+                    divided.pieces.push(self.piece(i) as u32);
+                }
+                divided.speeds.resize(divided.len(), self.speeds[i]);
+            }
+            divided.passes.push(PassSpan { segments: first..divided.len(), ..pass.clone() });
+        }
+        Self { seconds: self.seconds, ..divided }
+    }
+
+    /// The same layer with both ends of each segment moved, so many times as far as is given, mm.
+    pub(super) fn moved(&self, by: &[[Vec3; 2]], times: f32) -> Self {
+        let ends =
+            |(bead, by): (&Bead, &[Vec3; 2])| bead.between(bead.from() + times * by[0], bead.to() + times * by[1]);
+        let mut moved = Self {
+            beads: self.beads.iter().zip(by).map(ends).collect(),
+            speeds: self.speeds.clone(),
+            ends: self.ends.clone(),
+            pieces: self.pieces.clone(),
+            passes: self.passes.clone(),
+            seconds: self.seconds,
+            ..Self::empty(0)
+        };
+        let mut left = None;
+        for pass in 0..moved.passes.len() {
+            let segments = moved.passes[pass].segments.clone();
+            if let (Some([start, _]), Some([_, end])) = (by.get(segments.start), by[segments.clone()].last()) {
+                let [from, to] = [left.unwrap_or(*start), *start].map(|by| f64::from(times) * by.as_dvec3());
+                moved.passes[pass].shift(from, to);
+                left = Some(*end);
+            }
+            moved.join(segments.clone());
+            moved.roughen(segments);
+        }
+        moved.boxes = moved.beads.chunks(BLOCK).map(box_of).collect();
+        moved
+    }
+
+    /// A layer without passes, with room for this many segments.
+    fn empty(count: usize) -> Self {
+        Self {
+            id: fresh_id(),
+            beads: Vec::with_capacity(count),
+            speeds: Vec::with_capacity(count),
+            ends: Vec::with_capacity(count),
+            pieces: Vec::new(),
+            passes: Vec::new(),
+            caps: Vec::new(),
+            cap_segments: Vec::new(),
+            rough: Vec::new(),
+            rough_segments: Vec::new(),
+            boxes: Vec::new(),
+            seconds: 0.0,
+        }
     }
 
     /// Lays a piece of a pass.
@@ -387,6 +448,14 @@ impl LayerBeads {
 }
 
 impl PassSpan {
+    /// Moves the ends of its travel, and what is between accordingly, mm.
+    fn shift(&mut self, from: DVec3, to: DVec3) {
+        let last = self.travel.len().saturating_sub(1).max(1) as f64;
+        for (i, leg) in self.travel.iter_mut().enumerate() {
+            leg.at += from.lerp(to, i as f64 / last);
+        }
+    }
+
     /// Adds the way from the layer before: the rise, which takes `rising` s, and the transfer if another body follows.
     fn comes_from(&mut self, from: Stance, rising: f64, transfer: Option<&Transfer>) {
         let legs = transfer.iter().flat_map(|way| &way.legs).map(|leg| Stance { at: leg.place, up: leg.normal });

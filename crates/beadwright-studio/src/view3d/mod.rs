@@ -9,6 +9,7 @@
 //! | `lie` | how it lies in space |
 //! | `scene` | the model and the layers planned so far |
 //! | `scanned` | a scan of the built part |
+//! | `bent` | how far plate and beads move as they cool |
 //! | `style`, [`palette`] | what is shown and in which colours |
 //! | `section` | a plane that cuts away what lies beyond it |
 //! | `camera` | where the eye is |
@@ -20,6 +21,7 @@
 //! | `headless` | a renderer without a window |
 
 mod beads;
+mod bent;
 mod camera;
 mod face;
 mod gizmo;
@@ -36,6 +38,7 @@ mod style;
 mod widget;
 
 pub use beads::{Bead, LayerBeads, PassSpan};
+pub use bent::Bent;
 pub use camera::{Camera, StandardView};
 pub use face::face;
 pub use gizmo::{Gizmo, Grip, Handle, Moved};

@@ -42,7 +42,7 @@ pub fn at(colour: Colour, part: f64, dark: bool) -> Rgb {
         Colour::HeightError => diverging(part),
         Colour::Temperature => ember(if dark { 0.15 + 0.85 * part } else { part }),
         // The dark end would vanish on a dark background, the bright end on a bright one.
-        Colour::Order | Colour::Speed | Colour::Width | Colour::Time | Colour::OffLevel => {
+        Colour::Order | Colour::Speed | Colour::Width | Colour::Time | Colour::OffLevel | Colour::Movement => {
             viridis(if dark { 0.12 + 0.88 * part } else { 0.95 * part })
         }
     }

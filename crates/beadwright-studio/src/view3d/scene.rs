@@ -1,6 +1,7 @@
 //! What can be shown: a model, and the layers planned so far.
 
 use super::beads::{LayerBeads, fresh_id};
+use super::bent::{self, Bent};
 use super::lie::Stance;
 use super::scanned::Scanned;
 use super::style::{Colour, Style};
@@ -15,6 +16,17 @@ pub(super) struct Values {
     pub of: Arc<[f32]>,
 }
 
+/// The layers as they are drawn where plate and part are bent.
+#[derive(Debug)]
+struct Bend {
+    shape: Arc<Bent>,
+    /// How often the movement is drawn as large as computed.
+    times: f64,
+    layers: Vec<Option<Arc<LayerBeads>>>,
+    /// How far their segments move, mm.
+    far: Vec<Option<Values>>,
+}
+
 /// A model, and its layers as they come in.
 #[derive(Debug, Default)]
 pub struct Scene {
@@ -26,6 +38,7 @@ pub struct Scene {
     /// By segment.
     leans: Vec<Option<Values>>,
     scan: Option<Scanned>,
+    bend: Option<Bend>,
     version: u64,
     mesh_version: u64,
     scan_version: u64,
@@ -68,6 +81,7 @@ impl Scene {
         self.values.clear();
         self.temperatures.clear();
         self.leans.clear();
+        self.bend = None;
         self.version = fresh_id();
     }
 
@@ -83,6 +97,27 @@ impl Scene {
         (self.version, self.scan_version) = (fresh_id(), fresh_id());
     }
 
+    /// Bends plate and layers to a shape, drawn so many times as large as computed; without one they are straight again.
+    /// A new layer makes all of them straight, too.
+    pub fn bend(&mut self, wanted: Option<(&Arc<Bent>, f64)>) {
+        let is_so =
+            |bend: &Bend| wanted.is_some_and(|(shape, times)| Arc::ptr_eq(&bend.shape, shape) && bend.times == times);
+        if self.bend.as_ref().map_or(wanted.is_none(), is_so) {
+            return;
+        }
+        self.bend = wanted.map(|(shape, times)| {
+            let values = |layer| shape.far(layer).map(|far| Values { id: fresh_id(), of: far.clone() });
+            let layers = shape.layers(times);
+            Bend { far: (0..layers.len()).map(values).collect(), shape: shape.clone(), times, layers }
+        });
+        self.version = fresh_id();
+    }
+
+    /// The bent plate.
+    pub(super) fn bent_plate(&self) -> Option<bent::Plate<'_>> {
+        self.bend.as_ref().map(|bend| bend.shape.plate(bend.times))
+    }
+
     /// Sets the layer with this index; layers may come in any order.
     pub fn set_layer(&mut self, index: usize, beads: Arc<LayerBeads>) {
         let count = self.layers.len().max(index + 1);
@@ -91,6 +126,7 @@ impl Scene {
         self.temperatures.resize(count, None);
         self.leans.resize(count, None);
         self.layers[index] = Some(beads);
+        self.bend = None;
         (self.values[index], self.temperatures[index], self.leans[index]) = (None, None, None);
         self.version = fresh_id();
     }
@@ -129,19 +165,24 @@ impl Scene {
         self.scan.as_ref()
     }
 
-    /// The layers; `None` for those not there yet.
+    /// The layers as planned; `None` for those not there yet.
     pub fn layers(&self) -> &[Option<Arc<LayerBeads>>] {
         &self.layers
     }
 
-    /// The layer with this index.
+    /// The layers as they are drawn.
+    fn drawn(&self) -> &[Option<Arc<LayerBeads>>] {
+        self.bend.as_ref().map_or(&self.layers, |bend| &bend.layers)
+    }
+
+    /// The layer with this index, as it is drawn.
     pub fn layer(&self, index: usize) -> Option<&Arc<LayerBeads>> {
-        self.layers.get(index)?.as_ref()
+        self.drawn().get(index)?.as_ref()
     }
 
     /// The layers that have come, with their indices.
     pub(super) fn present(&self) -> impl DoubleEndedIterator<Item = (usize, &Arc<LayerBeads>)> {
-        self.layers.iter().enumerate().filter_map(|(i, layer)| Some((i, layer.as_ref()?)))
+        self.drawn().iter().enumerate().filter_map(|(i, layer)| Some((i, layer.as_ref()?)))
     }
 
     pub(super) fn values(&self, index: usize) -> Option<&Values> {
@@ -154,6 +195,11 @@ impl Scene {
 
     pub(super) fn leans(&self, index: usize) -> Option<&Values> {
         self.leans.get(index)?.as_ref()
+    }
+
+    /// How far the segments of a bent layer move, mm.
+    pub(super) fn movements(&self, index: usize) -> Option<&Values> {
+        self.bend.as_ref()?.far.get(index)?.as_ref()
     }
 
     pub(super) fn version(&self) -> u64 {
@@ -270,6 +316,7 @@ impl Scene {
                 let range = all.map(f64::from).map(|t| (t, t)).reduce(|(a, b), (c, d)| (a.min(c), b.max(d)));
                 range.map(|(low, high)| (low, high.max(low + 1.0)))
             }
+            Colour::Movement => Some((0.0, self.bend.as_ref()?.shape.most())),
             Colour::OffLevel => {
                 let leans = self.leans.iter().flatten().flat_map(|leans| leans.of.iter().copied());
                 let most = leans.filter(|lean| lean.is_finite()).reduce(f32::max)?;

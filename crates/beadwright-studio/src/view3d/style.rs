@@ -27,6 +27,8 @@ pub enum Colour {
     Temperature,
     /// How far the layer leans from level there, as the part is held, °.
     OffLevel,
+    /// How far the metal moves where plate and part are bent, mm.
+    Movement,
 }
 
 /// The plate on which the part is built; its top is z = 0.
@@ -45,10 +47,14 @@ pub struct Plate {
 pub struct Style {
     /// What the colour of a bead means.
     pub colour: Colour,
+    /// The values at the two ends of the colours, where they are not the least and the largest of the scene.
+    pub range: Option<(f64, f64)>,
     /// Whether the model is shown: solid by itself, translucent around beads.
     pub mesh: bool,
     /// Whether the scan is shown, coloured by its deviation; then only the edges of the model are.
     pub scan: bool,
+    /// Whether the bent plate is shown, in the colours of its movement; then only the edges of the model are.
+    pub bent: bool,
     /// Whether travels (moves with the arc off) are shown.
     pub travels: bool,
     /// Whether starts and ends of passes are marked.
@@ -79,8 +85,10 @@ impl Default for Style {
     fn default() -> Self {
         Self {
             colour: Colour::Kind,
+            range: None,
             mesh: true,
             scan: false,
+            bent: false,
             travels: false,
             starts: false,
             marks_from: 0,

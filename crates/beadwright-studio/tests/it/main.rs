@@ -5,10 +5,12 @@ mod arm;
 mod broken;
 mod colours;
 mod contrast;
+mod distortion;
 mod docs;
 mod heat;
 mod holding;
 mod inside;
+mod listing;
 mod project;
 mod section;
 #[path = "../../../beadwright/tests/it/sight/mod.rs"]

@@ -28,7 +28,7 @@ const ALUMINIUM: f64 = 3.5;
 #[non_exhaustive]
 pub enum DistortionError {
     /// The profile lacks thermal values.
-    #[error(transparent)]
+    #[error("The distortion cannot be computed: the profile has no {}. Add it; docs/heat.md names usual values.", .0.0)]
     Lacks(#[from] HeatError),
     /// Layers are not level.
     #[error("The layers of this plan are not level: only parts on a flat plate can be computed so far.")]

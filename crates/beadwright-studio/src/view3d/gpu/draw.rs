@@ -8,7 +8,7 @@ use super::{Gpu, Quality, background};
 use crate::view3d::beads::Bead;
 use crate::view3d::pick::Pick;
 use crate::view3d::scene::Scene;
-use crate::view3d::style::Style;
+use crate::view3d::style::{Colour, Style};
 use eframe::egui_wgpu::wgpu;
 
 /// Everything a picture is made from.
@@ -47,6 +47,9 @@ impl Shot<'_> {
             scan.draw(pass, pipelines);
             pass.set_bind_group(0, &gpu.bindings[0], &[]);
         }
+        if let Some(plate) = gpu.bent_plate.as_ref().filter(|_| style.bent) {
+            plate.draw(pass, pipelines);
+        }
         if style.beads {
             drawn
                 .iter()
@@ -66,8 +69,8 @@ impl Shot<'_> {
         pass.set_pipeline(&pipelines.ground);
         pass.draw(0..4, 0..1);
         if let Some(surface) = surface {
-            // Glass would tint the colours of a scan.
-            if any_bead && scan.is_none() {
+            // Glass would tint the colours of a scan or a movement.
+            if any_bead && scan.is_none() && style.colour != Colour::Movement {
                 draw_surface(pass, &pipelines.glass, surface);
             }
             draw_points(pass, &pipelines.line, Some(surface.edges.slice(..)), 0..surface.edge_vertices, 0..1);

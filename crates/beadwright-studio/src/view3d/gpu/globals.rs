@@ -57,7 +57,7 @@ impl Globals {
         let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
         let at_one = if camera.orthographic { 1.0 } else { 1.0 / camera.distance };
         let nudge = NUDGE[usize::from(camera.orthographic)];
-        let (low, per_range) = values(scene, style.colour);
+        let (low, per_range) = values(scene, style);
         let v4 = |x: f64, y: f64, z: f64, w: f64| [x as f32, y as f32, z as f32, w as f32];
         Self {
             clip_from_world: camera.clip_from_world(size).as_mat4().to_cols_array_2d(),
@@ -78,11 +78,11 @@ impl Globals {
 }
 
 /// Lowest value of the colour map and 1 / its range.
-fn values(scene: &Scene, colour: Colour) -> (f64, f64) {
-    if colour == Colour::Kind {
+fn values(scene: &Scene, style: &Style) -> (f64, f64) {
+    if style.colour == Colour::Kind {
         return (0.0, 1.0 / (palette::STEPS - 1) as f64);
     }
-    let (low, high) = scene.value_range(colour).unwrap_or((0.0, 1.0));
+    let (low, high) = style.range.or_else(|| scene.value_range(style.colour)).unwrap_or((0.0, 1.0));
     // If all values are the same, they get the middle of the map.
     if high > low { (low, 1.0 / (high - low)) } else { (low - 0.5, 1.0) }
 }

@@ -6,7 +6,7 @@
 //! | `values` | what their colours are made from |
 //! | `draw` | the order in which things are drawn |
 //! | `surface` | the model |
-//! | `scan` | a scan of the built part |
+//! | `scan` | a scan of the built part, the bent plate |
 //! | `solids` | plate, torch and arm |
 //! | `growing` | a buffer that can grow |
 //! | `globals` | the data passed to all shaders |
@@ -36,6 +36,7 @@ use globals::Globals;
 use growing::Growing;
 use pipelines::Pipelines;
 use scan::Scan;
+pub(super) use solids::BELOW;
 use surface::Surface;
 pub(super) use target::Target;
 use wgpu::util::DeviceExt as _;
@@ -82,6 +83,7 @@ pub(super) struct Gpu {
     surface_version: Option<u64>,
     scan: Option<Scan>,
     scan_version: Option<u64>,
+    bent_plate: Option<Scan>,
     /// The colours of its deviation, bound.
     scan_binding: wgpu::BindGroup,
     solids: Growing,
@@ -121,6 +123,7 @@ impl Gpu {
             surface_version: None,
             scan: None,
             scan_version: None,
+            bent_plate: None,
             solids: Growing::new("plate, torch and arm"),
         }
     }
@@ -137,6 +140,8 @@ impl Gpu {
         if self.synced != Some(state) {
             chunks::sync(&mut self.chunks, (&self.device, &self.queue), scene, style.colour);
             self.synced = Some(state);
+            let plate = scene.bent_plate();
+            self.bent_plate = plate.and_then(|(points, corners)| Scan::new(&self.device, &points, corners));
         }
         if self.surface_version != Some(scene.mesh_version()) {
             self.surface_version = Some(scene.mesh_version());
@@ -148,7 +153,7 @@ impl Gpu {
         }
         if self.scan_version != Some(scene.scan_version()) {
             self.scan_version = Some(scene.scan_version());
-            self.scan = scene.scan().and_then(|scan| Scan::new(&self.device, scan));
+            self.scan = scene.scan().and_then(|scan| Scan::new(&self.device, &scan.points, &scan.triangles));
         }
     }
 

@@ -1,10 +1,10 @@
-//! A scan on the graphics card: its triangles, or its points where it has none.
+//! What has a colour of its own at each of its points, on the graphics card: a scan, as triangles or, where it has none, as
+//! points; the bent plate.
 
 use super::pipelines::Pipelines;
-use crate::view3d::scanned::Scanned;
 use eframe::egui_wgpu::wgpu::{self, util::DeviceExt as _};
 
-/// A scan on the graphics card.
+/// Coloured points on the graphics card, and the triangles between them.
 #[derive(Debug)]
 pub(super) struct Scan {
     points: wgpu::Buffer,
@@ -14,20 +14,21 @@ pub(super) struct Scan {
 }
 
 impl Scan {
-    /// Sends a scan; `None` where it is too large for a buffer.
-    pub(super) fn new(device: &wgpu::Device, scan: &Scanned) -> Option<Self> {
-        let (points, triangles) = (bytemuck::cast_slice(&scan.points), bytemuck::cast_slice(&scan.triangles));
+    /// Sends points, each with its place in the colour map, and the triangles between them; `None` where they are too large for
+    /// a buffer.
+    pub(super) fn new(device: &wgpu::Device, coloured: &[[f32; 4]], corners: &[[u32; 3]]) -> Option<Self> {
+        let (points, triangles) = (bytemuck::cast_slice(coloured), bytemuck::cast_slice(corners));
         if points.len().max(triangles.len()) as u64 > device.limits().max_buffer_size {
             return None;
         }
         let buffer = |label: &str, contents: &[u8], usage: wgpu::BufferUsages| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
-        let indices = || buffer("triangles of the scan", triangles, wgpu::BufferUsages::INDEX);
+        let indices = || buffer("triangles between coloured points", triangles, wgpu::BufferUsages::INDEX);
         Some(Self {
-            points: buffer("scan", points, wgpu::BufferUsages::VERTEX),
-            count: scan.points.len() as u32,
-            triangles: (!triangles.is_empty()).then(|| (indices(), scan.triangles.len() as u32 * 3)),
+            points: buffer("coloured points", points, wgpu::BufferUsages::VERTEX),
+            count: coloured.len() as u32,
+            triangles: (!triangles.is_empty()).then(|| (indices(), corners.len() as u32 * 3)),
         })
     }
 

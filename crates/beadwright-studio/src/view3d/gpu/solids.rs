@@ -13,7 +13,7 @@ const SIDES: usize = 36;
 const ROUND: usize = 8;
 
 /// The top of the plate lies this far below the part, mm, so that the grid is seen on it.
-const BELOW: f32 = 0.05;
+pub(in crate::view3d) const BELOW: f32 = 0.05;
 
 /// Everything that a style shows around the part.
 pub(super) fn solids(style: &Style) -> Vec<Point> {

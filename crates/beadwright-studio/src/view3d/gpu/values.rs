@@ -33,6 +33,7 @@ pub(super) fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, c
                 Colour::HeightError => scene.values(slot.layer),
                 Colour::Temperature => scene.temperatures(slot.layer),
                 Colour::OffLevel => scene.leans(slot.layer),
+                Colour::Movement => scene.movements(slot.layer),
                 _ => None,
             };
             let key = ValueKey {
@@ -91,7 +92,7 @@ fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: 
         Colour::Order => out.extend((0..layer.len()).map(|i| (key.segments_before + i) as f32)),
         Colour::Time => out.extend(layer.ends.iter().map(|&end| (key.seconds_before + f64::from(end)) as f32)),
         Colour::HeightError => out.extend((0..layer.len()).map(|i| known(supplied, layer.piece(i)))),
-        Colour::OffLevel => out.extend((0..layer.len()).map(|i| known(supplied, i))),
+        Colour::OffLevel | Colour::Movement => out.extend((0..layer.len()).map(|i| known(supplied, i))),
         Colour::Temperature => {
             for (i, pass) in layer.passes().iter().enumerate() {
                 let known = pass.temperature.or_else(|| supplied?.get(i).copied());

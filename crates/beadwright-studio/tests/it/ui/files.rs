@@ -122,6 +122,7 @@ fn undo_beyond_the_opening_lets_go_of_the_file() {
     press(&mut harness, Modifiers::COMMAND, Key::Z);
     assert_eq!(harness.state().file(), Some(&*b));
     press(&mut harness, Modifiers::COMMAND, Key::Z);
+    click(&mut harness, "Close the part");
     wait(&mut harness);
     assert_eq!(harness.state().project().source, Some(Source::Example("cross".to_owned())));
     assert_eq!(harness.state().file(), None, "saving would write the cross into plate.bwp");
@@ -131,7 +132,12 @@ fn undo_beyond_the_opening_lets_go_of_the_file() {
 fn undo_leads_back_to_the_empty_window() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(&folder.path().join("store"), "cross");
-    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    for answer in ["Cancel", "Close the part"] {
+        assert!(harness.state().plan().is_complete(), "the part is closed unasked");
+        press(&mut harness, Modifiers::COMMAND, Key::Z);
+        click(&mut harness, answer);
+        assert!(!sees(&harness, "Close this part?"));
+    }
     wait(&mut harness);
     assert!(sees(&harness, "Drop a part here"));
     let plan = harness.state().plan();

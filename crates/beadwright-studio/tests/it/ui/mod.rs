@@ -3,6 +3,7 @@
 mod background;
 mod basic;
 mod compare;
+mod distortion;
 mod edit;
 mod export;
 mod faults;
@@ -18,7 +19,10 @@ mod place;
 mod placement;
 mod play;
 mod preform;
+mod program;
+mod range;
 mod scan;
 mod space;
 mod start;
+mod trial;
 mod words;

@@ -1,6 +1,7 @@
 //! The torch runs as the program will.
 
-use crate::window::{example, press, sees, slide};
+use crate::window::{example, has_adapter, press, sees, slide};
+use beadwright_studio::shares::Shares;
 use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 
@@ -69,4 +70,61 @@ fn the_torch_waits_and_goes_on() {
     press(&mut harness, Key::PageDown);
     let view = harness.state_mut().view().clone();
     assert!(!view.playing && view.last == 1 && view.torch.is_none());
+}
+
+#[test]
+fn the_clock_takes_the_torch_to_any_time_of_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    let total = harness.state().plan().scene.total_seconds();
+    assert!(harness.query_by_label_contains("left: 0:00:00").is_some(), "all of it is shown");
+    for part in [0.0, 0.31, 0.77, 1.0] {
+        slide(&mut harness, "Clock", part * total);
+        let view = harness.state_mut().view().clone();
+        let wanted = harness.state().plan().scene.at_time(view.seconds).unwrap();
+        assert!((view.seconds - part * total).abs() < 1e-3 * total && !view.playing);
+        assert_eq!(view.last, wanted.layer);
+        assert!(view.torch.unwrap().at.distance(wanted.torch.at) < 1e-6);
+        let left = (total - view.seconds).round() as u64;
+        let left = format!("left: 0:{:02}:{:02}", left / 60, left % 60);
+        assert!(harness.query_by_label_contains(&left).is_some(), "{left} is not shown");
+    }
+    // Play goes on from there.
+    slide(&mut harness, "Clock", 0.5 * total);
+    press(&mut harness, Key::Space);
+    assert!(harness.state_mut().view().seconds > 0.5 * total);
+    // The clock follows what is shown.
+    slide(&mut harness, "Last layer", 3.0);
+    let view = harness.state_mut().view().clone();
+    let scene = &harness.state().plan().scene;
+    let (seconds, now) = (scene.seconds_before(3), view.now(scene));
+    assert!((now - seconds).abs() < 1e-6, "{now} s, not {seconds} s");
+    if has_adapter() {
+        let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("clock.png");
+        harness.render().unwrap().save(path).unwrap();
+    }
+}
+
+#[test]
+fn the_shares_of_the_time_are_those_of_the_metrics() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    harness.state_mut().set_value("start_stop.interpass_time", "30.0");
+    harness.state_mut().set_value("fill.strategy", "\"compound\"");
+    crate::window::wait(&mut harness);
+    let plan = harness.state().plan();
+    let metrics = &plan.summary.as_ref().unwrap().metrics;
+    let shares = Shares::of(&plan.scene, metrics);
+    let arc: f64 = shares.arc.iter().map(|(_, seconds)| seconds).sum();
+    assert_eq!((shares.wait, shares.starts), (metrics.dwell_time_s, metrics.start_stop_time_s));
+    assert!(
+        (arc + shares.starts + shares.travel + shares.wait - metrics.total_time_s).abs() < 1e-6 * metrics.total_time_s
+    );
+    // Without craters, the torch moves as long as the arc is on; travels take what their length takes.
+    assert!((arc / metrics.arc_time_s - 1.0).abs() < 1e-4, "{arc} of {} s", metrics.arc_time_s);
+    let travel = metrics.travel_length_mm / plan.profile.as_ref().unwrap().travel.speed;
+    assert!((shares.travel / travel - 1.0).abs() < 0.02, "{} of {travel} s", shares.travel);
+    assert!(shares.arc.len() > 1, "{:?}", shares.arc);
+    let wait = format!("wait {:.0} %", 100.0 * shares.wait / shares.total);
+    assert!(harness.query_by_label_contains(&wait).is_some() && shares.wait > 0.0, "{wait} is not shown");
 }

@@ -153,6 +153,12 @@ pub(crate) fn type_number(harness: &mut Window, name: &str, text: &str) {
     harness.run_steps(3);
 }
 
+/// The values at both ends of the colours, as they are shown.
+pub(crate) fn colour_range(harness: &Window) -> [String; 2] {
+    let field = |name| harness.get_by_role_and_label(Role::SpinButton, name).value().unwrap();
+    ["Lowest value of the colours", "Highest value of the colours"].map(field)
+}
+
 /// Searches among the parameters.
 pub(crate) fn search(harness: &mut Window, text: &str) {
     harness.get_by_role_and_label(Role::TextInput, "Search").click();
