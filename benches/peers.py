@@ -50,7 +50,7 @@ def model(name, scale, turn, work):
 
 def ours(binary, part, bead, perimeters, work, given):
     if given.welder and bead[0] > 1:
-        how = ["-p", "cmt-al2319-kuka", "-s", "compound"]
+        how = ["-p", "cmt-al2319-kuka", "-s", "compound", "--surface", "solid"]
     else:
         profile = PROFILES[bead].read_text().replace("perimeters = 1", f"perimeters = {perimeters}")
         (work / "profile.toml").write_text(profile)

@@ -3,6 +3,7 @@
 use super::metal::Bead;
 use bead_plan::pass::Pass;
 use glam::DVec2;
+use std::cell::Cell;
 
 /// A pass with less than this fraction of its length over metal lies in the air.
 const LEAST: f64 = 0.5;
@@ -86,7 +87,7 @@ pub(super) fn hanging(pass: &Pass, places: Places, room: impl Fn(DVec2, DVec2, f
     let in_the_air = all - free < (LEAST * all as f64).ceil() as usize;
     let hangs = in_the_air || clear.unwrap_or(0) as f64 * step >= bridge;
     let middle = (first + from + long / 2) % all;
-    hangs.then(|| Hanging { length: free as f64 * step, place: place_at(pass, middle as f64 * step) })
+    hangs.then(|| Hanging { length: free as f64 * step, place: Path::of(pass).at(middle as f64 * step).0 })
 }
 
 /// Neighbouring places on a pass with the same below them.
@@ -98,53 +99,90 @@ struct Stretch {
 /// Whether clearly more than [`LEAST`] of a long pass lies over metal, by scattered places: they do not keep step with
 /// the beads that they cross.
 fn is_clearly_held(pass: &Pass, places: Places, room: impl Fn(DVec2, DVec2, f64) -> Option<f64>) -> bool {
-    let length = pass.length();
-    if length < SCATTERED as f64 * places.step {
+    if pass.length() < SCATTERED as f64 * places.step {
         return false;
     }
-    let scattered = (0..SCATTERED).map(|k| (k as f64 + (k as f64 * GOLDEN).fract()) / SCATTERED as f64 * length);
-    let (mut pieces, mut along) = (pieces(pass), 0.0);
-    let Some(mut piece) = pieces.next() else { return false };
-    let mut held = 0;
-    for place in scattered {
-        while place > along + piece.length {
-            along += piece.length;
-            let Some(next) = pieces.next() else { break };
-            piece = next;
-        }
-        held += usize::from(room(piece.from + piece.axis * (place - along), DVec2::ZERO, 0.0).is_some());
-    }
+    let path = Path::of(pass);
+    let scattered = (0..SCATTERED).map(|k| (k as f64 + (k as f64 * GOLDEN).fract()) / SCATTERED as f64 * path.length());
+    let held = scattered.filter(|along| room(path.at(*along).0, DVec2::ZERO, 0.0).is_some()).count();
     held as f64 >= CLEARLY * SCATTERED as f64
 }
 
 /// Whether no stretch as long as a bridge is clear of all metal: not every place has to be looked at for that, only the
-/// last of each bridge that could begin after metal.
+/// last of each bridge that could begin after metal, and those beside it where it is clear.
 fn has_no_gap(pass: &Pass, places: Places, room: impl Fn(DVec2, DVec2, f64) -> Option<f64>) -> bool {
     let Places { step, bridge, clear } = places;
     if bridge == f64::INFINITY {
         return true;
     }
-    let within = |p: DVec2, way: DVec2| {
-        let room = room(p, way, clear);
-        (if room.is_some() { Below::Edge } else { Below::Air }, room.unwrap_or_default())
+    let (path, many) = (Path::of(pass), (bridge / step).ceil().max(1.0) as usize);
+    let all = (path.length() / step) as usize + 1;
+    // How many places after this one are surely as near to metal; none if it is clear.
+    let held = |place: usize| {
+        let (p, way, left) = path.at(place as f64 * step);
+        room(p, way, clear).map(|room| (room.min(left) / step) as usize)
     };
-    let skipped = (bridge / step).ceil().max(1.0) as usize - 1;
-    stretches_but(pass, step, skipped, within).all(|stretch| stretch.below != Below::Air)
+    if pass.closed && held(0).is_none() {
+        return false;
+    }
+    let mut place = many - 1;
+    while place < all {
+        place = match held(place) {
+            Some(more) => place + more + many,
+            None => {
+                let is_clear = |place: &usize| held(*place).is_none();
+                let before = (place + 1 - many..place).rev().take_while(is_clear).count();
+                let after = (place + 1..all).take(many - before - 1).take_while(is_clear).count();
+                if before + 1 + after >= many {
+                    return false;
+                }
+                // The place after the last clear one is not clear.
+                place + after + 1 + many
+            }
+        };
+    }
+    true
+}
+
+/// The pieces of a pass by the length of the pass up to each.
+struct Path {
+    pieces: Vec<(f64, Bead)>,
+    /// The piece of the last place.
+    last: Cell<usize>,
+}
+
+impl Path {
+    fn of(pass: &Pass) -> Self {
+        let along = |along: &mut f64, piece: Bead| {
+            let from = *along;
+            *along += piece.length;
+            Some((from, piece))
+        };
+        Self { pieces: pieces(pass).scan(0.0, along).collect(), last: Cell::new(0) }
+    }
+
+    fn length(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |(from, piece)| from + piece.length)
+    }
+
+    /// The place at a length along the path, its direction, and how far the piece goes on, mm.
+    fn at(&self, length: f64) -> (DVec2, DVec2, f64) {
+        let mut number = self.last.get();
+        while number > 0 && self.pieces[number].0 > length {
+            number -= 1;
+        }
+        while self.pieces.get(number + 1).is_some_and(|(from, _)| *from < length) {
+            number += 1;
+        }
+        self.last.set(number);
+        let Some((from, piece)) = self.pieces.get(number) else { return Default::default() };
+        (piece.from + piece.axis * (length - from), piece.axis, (from + piece.length - length).max(0.0))
+    }
 }
 
 /// The places on a pass, `step` (mm) apart, as stretches; neighbouring ones may be alike. `below` says what lies below a
 /// place, and how far in a direction it surely goes on, mm.
 fn stretches(pass: &Pass, step: f64, below: impl Fn(DVec2, DVec2) -> (Below, f64)) -> impl Iterator<Item = Stretch> {
-    stretches_but(pass, step, 0, below)
-}
-
-/// The same without so many places after each stretch.
-fn stretches_but(
-    pass: &Pass,
-    step: f64,
-    skipped: usize,
-    below: impl Fn(DVec2, DVec2) -> (Below, f64),
-) -> impl Iterator<Item = Stretch> {
     // A piece, the length of the pass up to it, and up to the next place.
     let (mut pieces, mut piece, mut along, mut next) = (pieces(pass), None::<Bead>, 0.0, 0.0);
     std::iter::from_fn(move || {
@@ -152,7 +190,7 @@ fn stretches_but(
             if let Some(piece) = piece.as_ref().filter(|piece| next <= along + piece.length) {
                 let (below, room) = below(piece.from + piece.axis * (next - along), piece.axis);
                 let places = 1 + (room.min(along + piece.length - next) / step) as usize;
-                next += (places + skipped) as f64 * step;
+                next += places as f64 * step;
                 return Some(Stretch { below, places });
             }
             along += piece.as_ref().map_or(0.0, |piece| piece.length);
@@ -163,18 +201,6 @@ fn stretches_but(
 
 fn pieces(pass: &Pass) -> impl Iterator<Item = Bead> {
     pass.segments().filter(|piece| piece.from.is_finite()).map(Bead::of)
-}
-
-/// The place at a length (mm) along a pass.
-fn place_at(pass: &Pass, length: f64) -> DVec2 {
-    let (mut left, mut end) = (length, DVec2::ZERO);
-    for piece in pieces(pass) {
-        if left <= piece.length {
-            return piece.from + piece.axis * left;
-        }
-        (left, end) = (left - piece.length, piece.to());
-    }
-    end
 }
 
 #[cfg(test)]
@@ -234,7 +260,7 @@ mod tests {
             let found = stretches.flat_map(|stretch| std::iter::repeat_n(stretch.below, stretch.places));
             let mut number = 0;
             for (k, found) in found.enumerate() {
-                let expected = by_all(&beads, place_at(&over, k as f64 * 0.5));
+                let expected = by_all(&beads, Path::of(&over).at(k as f64 * 0.5).0);
                 prop_assert!(expected.is_none_or(|expected| expected == found), "place {k}");
                 number += 1;
             }
@@ -260,7 +286,7 @@ mod tests {
                 gap
             }).max().unwrap_or_default();
             // Places that a bead touches may count as within it or not.
-            let edge = (0..=(over.length() / 0.5) as usize).any(|k| by_all(&beads, place_at(&over, k as f64 * 0.5)).is_none());
+            let edge = (0..=(over.length() / 0.5) as usize).any(|k| by_all(&beads, Path::of(&over).at(k as f64 * 0.5).0).is_none());
             let none = has_no_gap(&over, places, |p, way, reach| metal.room(p, way, reach));
             // Where no gap is found there is none; where one may be, all places are looked at.
             prop_assert!(edge || !none || (longest as f64) * 0.5 < bridge, "{longest} places of {bridge} mm");
