@@ -339,19 +339,19 @@ impl Server {
 
     /// Sets the variables row by row.
     fn set(&mut self, begin: f64, rows: &[Row]) {
-        let mut lines = String::new();
-        for (time, number, current) in rows {
-            writeln!(lines, "{:.3},n={number},current={current}", begin + time).unwrap();
-        }
-        self.rows.write_all(lines.as_bytes()).unwrap();
-        self.wait_for("done", rows.len());
+        let line = |(time, number, current): &Row| format!("{:.3},n={number},current={current}", begin + time);
+        self.tell(&rows.iter().map(line).collect::<Vec<_>>());
         // So long that all of it is sent.
         std::thread::sleep(Duration::from_millis(800));
     }
 
     fn cut(&mut self) {
-        self.rows.write_all(b"cut\n").unwrap();
-        self.wait_for("done", 1);
+        self.tell(&["cut".to_owned()]);
+    }
+
+    fn tell(&mut self, lines: &[String]) {
+        self.rows.write_all((lines.join("\n") + "\n").as_bytes()).unwrap();
+        self.wait_for("done", lines.len());
     }
 
     fn wait_for(&mut self, word: &str, mut count: usize) {
@@ -411,7 +411,7 @@ fn a_server_is_heard_again_after_its_connections_were_cut_and_after_it_was_kille
     assert!(!changed && !lost.is_empty());
     let mut server = Server::new(port);
     wait_for("the server to be heard again", || {
-        fs::read_to_string(at.join("said.txt")).unwrap().contains("kept nothing")
+        fs::read_to_string(at.join("said.txt")).unwrap().contains("The server kept nothing")
     });
     server.set(begin, third);
     let expected: Vec<usize> = [first, second, third].concat().iter().map(|row| row.1).collect();
@@ -421,4 +421,32 @@ fn a_server_is_heard_again_after_its_connections_were_cut_and_after_it_was_kille
     each_once(&numbers(at), &expected);
     let kinds = found(at, passes);
     assert!(kinds.contains("interrupted") && kinds.contains("gap"), "{kinds:?}");
+}
+
+#[test]
+fn words_are_written_once_and_all_rows_have_the_clock_of_the_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let (at, port) = (folder.path(), free_port());
+    if !has_asyncua(at) {
+        return;
+    }
+    let node = |name: &str| format!("{name} = {{ node = \"ns=2;s=Power.{name}\" }}\n");
+    let columns = ["n", "current", "event"].map(node).concat();
+    fs::write(at.join("power.toml"), format!("url = \"opc.tcp://127.0.0.1:{port}/\"\n[columns]\n{columns}")).unwrap();
+    let mut server = Server::new(port);
+    let listener = listen(at, "power.toml", &[]);
+    let log = || fs::read_to_string(at.join("logs/power.csv")).unwrap();
+    // The clock of the cell is years behind that of the server: 2023-11-14T22:13:20Z.
+    let begin = 1.7e9;
+    let told = ["event=arc_on", "n=1,current=150", "n=2,current=151", "n=3,current=0,event=arc_off"];
+    let line = |(step, told): (usize, &&str)| format!("{:.3},{told}", begin + step as f64 / 10.0);
+    server.tell(&told.iter().enumerate().map(line).collect::<Vec<_>>());
+    // Rows with the same values go on.
+    wait_for("rows that go on", || log().rsplit("arc_off").next().is_some_and(|rest| rest.lines().count() > 4));
+    ctrl_c(listener);
+    let log = log();
+    assert_eq!((log.matches("arc_on").count(), log.matches("arc_off").count()), (1, 1), "{log}");
+    let rows: Vec<&str> =
+        log[log.find('\n').unwrap() + 1..].lines().skip_while(|row| !row.contains("arc_on")).collect();
+    assert!(rows.is_sorted() && rows.iter().all(|row| row.starts_with("2023-11-14T22:13:2")), "{log}");
 }
