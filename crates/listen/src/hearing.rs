@@ -136,6 +136,11 @@ impl<'a> Hearing<'a> {
         Ok(self.watch.is_over())
     }
 
+    /// Whether listening ends because another source has failed.
+    pub(crate) fn is_failed(&self) -> bool {
+        self.watch.is_failed()
+    }
+
     /// Reports the topics that have become silent.
     pub(crate) fn report_silence(&mut self) -> Result<(), ListenError> {
         if self.lost.is_some() || self.source.silent == 0.0 {
