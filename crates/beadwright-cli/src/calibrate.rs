@@ -151,7 +151,7 @@ fn base(Posed { points, robot }: &Posed, cell: Option<&Path>) -> anyhow::Result<
     let leans = z.angle_between(DVec3::Z).to_degrees();
     anyhow::ensure!(
         cell.is_none() || leans < UPRIGHT,
-        "{}: the frame leans by {leans:.1}°, and the part of a cell stands upright. Set the table level, or leave --write out.",
+        "{}: the frame is tilted by {leans:.1}°, but a cell can only hold a level one (within {UPRIGHT}°). Level the table, or leave out --write.",
         table.name
     );
     let (about_z, ..) = place.turn.to_euler(EulerRot::ZYX);

@@ -65,6 +65,11 @@ fn print(learnt: &Learnt, wanted: &Wanted<'_>) -> anyhow::Result<()> {
 
 /// The sheet of a trial with what was measured in place of what was set: a record for each of its plates, in order.
 pub(crate) fn into_sheet(sheet: &str, records: &[PathBuf]) -> anyhow::Result<String> {
+    if records.is_empty() {
+        return Ok(sheet.to_owned());
+    }
+    let (given, plates) = (records.len(), trial::plates(sheet)?);
+    anyhow::ensure!(given == plates, "{given} records for {plates} plates: give one for each plate, in order.");
     let mut sheet = sheet.to_owned();
     for (plate, path) in (1..).zip(records) {
         let passes = read(path)?;

@@ -31,6 +31,12 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let sources = arguments.sources.iter().map(|path| Source::read(path)).collect::<Result<Vec<_>, _>>()?;
+    // On standard error at once, whatever becomes of the output.
+    let said = |sentence: &str| {
+        if say::loudness() != say::Loudness::Quiet {
+            eprintln!("{sentence}");
+        }
+    };
     for (k, source) in sources.iter().enumerate() {
         let twice = sources[..k].iter().any(|other| other.name == source.name);
         anyhow::ensure!(
@@ -39,18 +45,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             source.name
         );
         for column in source.unused() {
-            eprintln!("note: {}: `beadwright record` does not use the column {column}", source.name);
+            said(&format!("note: {}: `beadwright record` does not use the column {column}", source.name));
         }
     }
     let (task, bar) = progress::task()?;
     bar.finish_and_clear();
     let until = Until { seconds: arguments.seconds, idle: arguments.until_idle, stopped: &|| task.check().is_err() };
-    // On standard error at once, whatever becomes of the output.
-    let said = |sentence: &str| {
-        if say::loudness() != say::Loudness::Quiet {
-            eprintln!("{sentence}");
-        }
-    };
     let heard = bead_listen::listen(&sources, &arguments.output, until, &said)?;
     if arguments.json {
         let logs: Vec<_> = heard.iter().map(as_json).collect();
@@ -67,7 +67,7 @@ fn as_json(heard: &Heard) -> serde_json::Value {
 fn print(heard: &Heard) -> anyhow::Result<()> {
     writeln!(
         say::done(false),
-        "{}: {} rows, {} interruptions, {} messages that cannot be read",
+        "{}: {} rows, {} interruptions, {} unreadable messages",
         heard.path.display(),
         heard.rows,
         heard.interruptions,

@@ -33,9 +33,9 @@ async def main(port):
     server.set_security_policy([ua.SecurityPolicyType.NoSecurity])
     space = await server.register_namespace("urn:cell")
     nodes = {}
-    for name in ["n", "current"]:
+    for name, value in [("n", 0.0), ("current", 0.0), ("event", "")]:
         node = ua.NodeId(f"Power.{name}", space)
-        nodes[name] = await server.nodes.objects.add_variable(node, name, 0.0)
+        nodes[name] = await server.nodes.objects.add_variable(node, name, value)
     async with server:
         print("ready", flush=True)
         reader = asyncio.StreamReader(limit=1 << 24)
@@ -51,7 +51,8 @@ async def main(port):
                 time, *cells = line.split(",")
                 at = datetime.fromtimestamp(float(time), timezone.utc)
                 for name, value in (cell.split("=") for cell in cells):
-                    value = ua.DataValue(ua.Variant(float(value)), SourceTimestamp=at)
+                    value = value if name == "event" else float(value)
+                    value = ua.DataValue(ua.Variant(value), SourceTimestamp=at)
                     await nodes[name].write_value(value)
             print("done", flush=True)
 

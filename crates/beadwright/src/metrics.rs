@@ -3,7 +3,7 @@
 use crate::bead::wire_area;
 use crate::chart::Chart;
 use crate::layer::Layer;
-use crate::process::{Cost, Spent};
+use crate::process::{Cost, Process, Spent};
 use crate::profile::{LayersSection, Profile};
 use crate::program::Programmer;
 use crate::slice::Half;
@@ -39,7 +39,7 @@ pub struct Metrics {
     pub cost: Option<f64>,
     /// Emissions by the factors of `[cost]`, kg CO₂e; `None` where it has none.
     pub co2_kg: Option<f64>,
-    /// Energy from the mains, kWh, by the current and voltage of the profile; `None` where it gives none.
+    /// Energy from the mains, kWh, by the currents and voltage of the profile; `None` where it gives none.
     pub energy_kwh: Option<f64>,
     /// Its currency.
     pub currency: String,
@@ -63,6 +63,9 @@ pub struct Metrics {
     pub milled_part_volume_mm3: Option<f64>,
     /// Volume of the beads, mm³.
     pub deposited_volume_mm3: f64,
+    /// Energy of the arc, kWh; `None` where the current or voltage of a pass is not known.
+    #[serde(skip)]
+    arc_kwh: Option<f64>,
     #[serde(skip)]
     rates: Rates,
     #[serde(skip)]
@@ -84,11 +87,18 @@ struct Rates {
     /// m³/s.
     gas: f64,
     gas_idle: f64,
-    /// Power of the arc, kW.
-    arc: Option<f64>,
+    process: Option<Process>,
     cost: Cost,
     /// How layers lie in space, where their thickness varies.
     layers: Option<LayersSection>,
+}
+
+impl Rates {
+    /// Power of the arc in a layer, kW.
+    fn power(&self, layer: &Layer) -> Option<f64> {
+        let process = self.process.as_ref()?.at_layer(layer.index);
+        Some(process.current? * process.voltage? / 1000.0)
+    }
 }
 
 impl Metrics {
@@ -102,7 +112,7 @@ impl Metrics {
             gas: process.gas_flow / 60_000.0,
             // It flows before and after every pass.
             gas_idle: process.gas_preflow + process.arc_start_delay + process.arc_end_delay + process.gas_postflow,
-            arc: process.current.zip(process.voltage).map(|(current, voltage)| current * voltage / 1000.0),
+            process: Some(process.clone()),
             cost: profile.cost.clone(),
             layers: profile.layers.charts().any(Chart::has_wedges).then(|| profile.layers.clone()),
         };
@@ -132,6 +142,7 @@ impl Metrics {
             mesh_volume_mm3: None,
             milled_part_volume_mm3: None,
             deposited_volume_mm3: 0.0,
+            arc_kwh: process.voltage.map(|_| 0.0),
             rates,
             torch: Torch::of(&profile.weld_settings()),
             turns: Turns(profile.program.positioner.is_some().then(|| profile.programmer())),
@@ -163,6 +174,7 @@ impl Metrics {
         self.travel_length_mm += begun.length();
         self.dwell_time_s += begun.waiting();
         self.total_time_s += begun.moving() + begun.waiting();
+        let power = self.rates.power(layer);
         for pass in &layer.passes {
             let Some(start) = pass.start() else { continue };
             if let Some(pause) = self.torch.wait(pass.wait) {
@@ -179,6 +191,7 @@ impl Metrics {
             self.deposited_volume_mm3 += welded.metal * self.rates.metal;
             self.travel_length_mm += approach.length + retract.length;
             self.arc_time_s += welded.moving + welded.crater;
+            self.arc_kwh = self.arc_kwh.zip(power).map(|(kwh, kw)| kwh + kw * (welded.moving + welded.crater) / 3600.0);
             self.total_time_s += approach.moving + retract.moving;
             self.total_time_s += welded.before + welded.moving + welded.crater + welded.after;
             self.shortest_arc_s = Some(self.shortest_arc_s.map_or(welded.moving, |least| least.min(welded.moving)));
@@ -199,7 +212,7 @@ impl Metrics {
             hours: self.total_time_s / 3600.0,
             wire_kg: self.wire_mass_kg,
             gas_m3: self.gas_m3,
-            arc_kwh: self.rates.arc.map(|power| power * self.arc_time_s / 3600.0),
+            arc_kwh: self.arc_kwh,
         }
     }
 

@@ -59,7 +59,7 @@ impl<'a> Hearing<'a> {
 
     /// Says that listening has begun.
     pub(crate) fn begun(&self) {
-        self.say(&format!("listening to {}, written to {}", self.source.url, self.log.path().display()));
+        self.say(&format!("listening to {}, writing to {}", self.source.url, self.log.path().display()));
     }
 
     /// Adds a row.
@@ -110,12 +110,19 @@ impl<'a> Hearing<'a> {
     pub(crate) fn resumed(&mut self, kept: &str) {
         let Some(lost) = self.lost.take() else { return };
         let seconds = lost.elapsed().as_secs_f64();
-        let sentence = format!("The connection to {} was made again after {seconds:.1} s. {kept}", self.source.url);
+        let sentence = format!("The connection to {} was restored after {seconds:.1} s. {kept}", self.source.url);
         self.say(&sentence);
         self.log.resumed(&sentence);
         self.places.values_mut().for_each(|place| place.last = Instant::now());
     }
 
+    /// Notes that rows are missing though the connection holds.
+    pub(crate) fn missing(&mut self, reason: &str) -> Result<(), ListenError> {
+        self.say(reason);
+        self.log.event("interrupted", reason)
+    }
+
+    /// Whether the connection is lost.
     pub(crate) fn is_lost(&self) -> bool {
         self.lost.is_some()
     }
@@ -127,6 +134,11 @@ impl<'a> Hearing<'a> {
             self.synced = Instant::now();
         }
         Ok(self.watch.is_over())
+    }
+
+    /// Whether listening ends because another source has failed.
+    pub(crate) fn is_failed(&self) -> bool {
+        self.watch.is_failed()
     }
 
     /// Reports the topics that have become silent.

@@ -30,6 +30,7 @@ pub use watch::Until;
 use hearing::Hearing;
 use log::Log;
 use source::Address;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::thread;
 use watch::Watch;
@@ -49,7 +50,9 @@ pub fn listen(
 ) -> Result<Vec<Heard>, ListenError> {
     let watch = Watch::new(until, say);
     let listen = |source: &Source| {
-        let heard = Log::open(source, folder).and_then(|log| one(source, log, &watch));
+        let whole = AssertUnwindSafe(|| Log::open(source, folder).and_then(|log| one(source, log, &watch)));
+        // A source that panics ends the others too.
+        let heard = catch_unwind(whole).unwrap_or(Err(ListenError::Ended));
         if heard.is_err() {
             watch.end();
         }

@@ -18,6 +18,8 @@ pub(crate) struct Log {
     earlier: HashSet<Vec<u8>>,
     /// An event that gets the time of the next row.
     waiting: Option<[String; 2]>,
+    /// Whether an earlier time of listening has ended, which is said once there is a row.
+    is_continued: bool,
     rows: u64,
     dirty: bool,
 }
@@ -38,12 +40,8 @@ impl Log {
         let last = time.map(|time| String::from_utf8_lossy(time).into_owned());
         let earlier = lines.into_iter().collect();
         let columns = source.columns.clone();
-        let mut log = Self { path, file, columns, last, earlier, waiting: None, rows: 0, dirty: true };
-        if log.last.is_some() {
-            log.interrupted("Listening had ended.")?;
-            log.resumed("Listening began again.");
-        }
-        Ok(log)
+        let is_continued = last.is_some();
+        Ok(Self { path, file, columns, last, earlier, waiting: None, is_continued, rows: 0, dirty: true })
     }
 
     /// Whether an earlier time of listening ended with such a row.
@@ -55,8 +53,13 @@ impl Log {
     /// Adds a row; cells are those of the columns, in order.
     pub(crate) fn row(&mut self, time: &str, cells: &[String]) -> Result<(), ListenError> {
         let mut bytes = Vec::new();
+        if std::mem::take(&mut self.is_continued) {
+            let last = self.last.as_deref().unwrap_or(time);
+            bytes = self.said(last, "interrupted", "Listening was stopped.")?;
+            bytes.extend(self.said(time, "resumed", "Listening began again.")?);
+        }
         if let Some([event, note]) = self.waiting.take() {
-            bytes = self.said(time, &event, &note)?;
+            bytes.extend(self.said(time, &event, &note)?);
         }
         let whole = [time].into_iter().chain(cells.iter().map(String::as_str));
         bytes.extend(line(whole).map_err(|why| self.error(&why))?);
@@ -76,14 +79,14 @@ impl Log {
 
     /// Says that it was made again, at the time of the next row.
     pub(crate) fn resumed(&mut self, note: &str) {
-        if self.last.is_some() {
+        if self.last.is_some() && !self.is_continued {
             self.waiting = Some(["resumed".to_owned(), note.to_owned()]);
         }
     }
 
-    /// Adds an event at the time of the last row, if there is one.
+    /// Adds an event at the time of the last row, if listening has written one: a start that fails leaves the log as it is.
     pub(crate) fn event(&mut self, event: &str, note: &str) -> Result<(), ListenError> {
-        let Some(time) = self.last.clone() else { return Ok(()) };
+        let Some(time) = self.last.clone().filter(|_| !self.is_continued) else { return Ok(()) };
         let bytes = self.said(&time, event, note)?;
         self.write(&bytes)
     }
@@ -137,12 +140,14 @@ fn line<'a>(cells: impl Iterator<Item = &'a str>) -> Result<Vec<u8>, csv::Error>
 
 /// Opens a log to be gone on with, and its last lines. What follows its last whole line is cut off.
 fn opened(path: &Path, header: &[u8]) -> io::Result<(File, Vec<Vec<u8>>)> {
-    let mut file = OpenOptions::new().read(true).append(true).create(true).open(path)?;
+    // Not for appending: Windows would then not let us cut it.
+    let mut file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
     let length = file.metadata()?.len();
     let mut first = Vec::new();
     BufReader::new(&file).take(TAIL).read_until(b'\n', &mut first)?;
     if !first.ends_with(b"\n") && header.starts_with(&first) {
         file.set_len(0)?;
+        file.seek(SeekFrom::Start(0))?;
         file.write_all(header)?;
         return Ok((file, Vec::new()));
     }
@@ -155,6 +160,7 @@ fn opened(path: &Path, header: &[u8]) -> io::Result<(File, Vec<Vec<u8>>)> {
     file.read_to_end(&mut tail)?;
     let whole = tail.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
     file.set_len(from + whole as u64)?;
+    file.seek(SeekFrom::End(0))?;
     let lines = tail[..whole].split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii_end);
     Ok((file, lines.filter(|line| !line.is_empty()).map(<[u8]>::to_vec).collect()))
 }

@@ -89,7 +89,10 @@ impl Reader<'_> {
                 }
             }
         }
-        self.leave(&mut told).await;
+        // Who must begin again because of another source wants what is published until then.
+        if !self.hearing.is_failed() {
+            self.leave(&mut told).await?;
+        }
         self.hearing.end()
     }
 
@@ -121,7 +124,9 @@ impl Reader<'_> {
         let topics = self.hearing.source.places();
         let refused = topics.iter().zip(codes).find(|(_, code)| **code == SubscribeReasonCode::Failure);
         refused.map_or(Ok(()), |(topic, _)| {
-            Err(self.hearing.refused(format!("the broker does not let us read {topic}. Ask for the right to read it.")))
+            Err(self
+                .hearing
+                .refused(format!("the broker denies read access to {topic}. Ask its administrator for it.")))
         })
     }
 
@@ -130,10 +135,10 @@ impl Reader<'_> {
             Ok(Event::Incoming(Incoming::Publish(message))) => self.publish(message),
             Ok(Event::Incoming(Incoming::ConnAck(answer))) => {
                 let kept = if answer.session_present {
-                    "The broker has kept what was published meanwhile."
+                    "The broker has kept what was published in the meantime."
                 } else {
                     self.subscribe()?;
-                    "The broker has kept nothing: what was published meanwhile is missing. Switch on its persistence."
+                    "The broker kept nothing, so what was published in the meantime is lost. Turn on its persistence."
                 };
                 self.hearing.resumed(kept);
                 Ok(())
@@ -173,14 +178,21 @@ impl Reader<'_> {
     }
 
     /// Tells the broker to keep nothing for us any longer, so that the next log does not begin with the end of this one.
-    async fn leave(&self, told: &mut UnboundedReceiver<Told>) {
+    async fn leave(&mut self, told: &mut UnboundedReceiver<Told>) -> Result<(), ListenError> {
+        // What has come already is acknowledged before the connection ends.
+        while let Ok(event) = told.try_recv() {
+            self.take(event)?;
+        }
         for topic in self.hearing.source.places() {
             _ = self.client.try_unsubscribe(topic);
         }
         _ = self.client.try_disconnect();
         let until = Instant::now() + Duration::from_secs(1);
         // The connection ends with an error once all is sent.
-        while let Ok(Some(Ok(_))) = timeout_at(until, told.recv()).await {}
+        while let Ok(Some(Ok(event))) = timeout_at(until, told.recv()).await {
+            self.take(Ok(event))?;
+        }
+        Ok(())
     }
 }
 

@@ -1,8 +1,11 @@
 //! OPC UA: variables of a server.
 //!
 //! The server queues the values of the variables, and sends them with the times at which they changed. A row holds what all variables
-//! are at its time; while none changes, the server says so twice a second, and a row with its time goes on with the same values. What
-//! the server sent while the connection was lost is asked for again; a session that it has forgotten is begun anew.
+//! are at its time, but words only when they are new. While nothing changes, the server says so twice a second, and a row goes on with
+//! the same values. What the server sent while the connection was lost is asked for again; a session that it has forgotten is begun
+//! anew, and so is a subscription of which nothing is heard any longer.
+//!
+//! Rows have the times of the values. The server may send them by another clock: of that, only differences are used.
 
 use crate::error::ListenError;
 use crate::hearing::{Heard, Hearing};
@@ -22,7 +25,7 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::str::FromStr;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 use tokio::time::{interval, timeout};
 
@@ -38,7 +41,9 @@ const QUEUE: u32 = 10_000;
 const ANSWER: Duration = Duration::from_secs(10);
 /// Longest time between attempts to connect again.
 const AGAIN: Duration = Duration::from_secs(2);
-/// A first value that is older is taken to be of this long before it was sent, µs: it may not have changed for days.
+/// A server of which nothing is heard for so long has stopped sending.
+const DEAF: Duration = Duration::from_secs(30);
+/// A first value that is older makes no row of its own, µs: it may not have changed for days. A clock that goes back by more was set.
 const OLD: i64 = 1_000_000;
 
 /// What is told to the reader.
@@ -53,7 +58,8 @@ enum Told {
 pub(crate) async fn listen(hearing: Hearing<'_>) -> Result<Heard, ListenError> {
     let nodes = nodes(&hearing)?;
     // The crate keeps certificates in a folder, also where none are used.
-    let folder = tempfile::tempdir().map_err(ListenError::System)?;
+    let folder = tempfile::tempdir();
+    let folder = folder.map_err(|why| hearing.refused(format!("no temporary folder can be made: {why}.")))?;
     let mut client = ClientBuilder::new()
         .application_name("Beadwright")
         .application_uri("urn:beadwright:listen")
@@ -77,7 +83,8 @@ pub(crate) async fn listen(hearing: Hearing<'_>) -> Result<Heard, ListenError> {
     let (tell, told) = unbounded_channel();
     let pump = tokio::spawn(pump(events.enter(), tell.clone()));
     let values = nodes.iter().map(|_| None).collect();
-    let reader = Reader { hearing, session, nodes, tell, values, last: i64::MIN, number: 0, subscription: 0, next: 1 };
+    let rows = Rows { hearing, nodes, values, last: None, is_missing: false };
+    let reader = Reader { rows, session, tell, heard: Instant::now(), number: 0, subscription: 0, next: 1 };
     let heard = reader.run(told).await;
     pump.abort();
     heard
@@ -92,6 +99,8 @@ async fn pump(events: impl Stream<Item = Result<SessionPollResult, StatusCode>>,
             return;
         }
     }
+    // The reader has ended if it does not want it.
+    _ = tell.send(Told::Session(Err(StatusCode::BadConnectionClosed)));
 }
 
 /// The variables with their nodes.
@@ -125,8 +134,11 @@ async fn endpoint(client: &Client, hearing: &Hearing<'_>) -> Result<(EndpointDes
     };
     let allows = |policy: &UserTokenPolicy| policy.token_type == kind;
     if !plain.user_identity_tokens.as_deref().unwrap_or_default().iter().any(allows) {
-        let remedy = if hearing.source.user.is_some() { "Leave user out." } else { "Give user and password_file." };
-        return Err(hearing.refused(format!("it does not let us in that way. {remedy}")));
+        let reason = match hearing.source.user {
+            Some(_) => "the server does not accept a user name and password. Leave out user.",
+            None => "the server does not accept anonymous clients. Give user and password_file.",
+        };
+        return Err(hearing.refused(reason.into()));
     }
     Ok((plain, identity))
 }
@@ -145,17 +157,14 @@ impl OnSubscriptionNotificationCore for Notify {
 }
 
 struct Reader<'a> {
-    hearing: Hearing<'a>,
+    rows: Rows<'a>,
     session: Arc<Session>,
-    nodes: Vec<(String, NodeId)>,
     tell: UnboundedSender<Told>,
-    /// What each variable is; `None` if it is not known since we subscribed.
-    values: Vec<Option<Value>>,
-    /// Time of the last row, µs since 1970.
-    last: i64,
+    /// When the server last said something of the subscription.
+    heard: Instant,
     /// Subscriptions so far.
     number: usize,
-    /// The server's name for the present one.
+    /// The server's name for the present one; 0 without one.
     subscription: u32,
     /// Number of the next message with values.
     next: u32,
@@ -164,10 +173,14 @@ struct Reader<'a> {
 impl Reader<'_> {
     async fn run(mut self, mut told: UnboundedReceiver<Told>) -> Result<Heard, ListenError> {
         if !timeout(ANSWER, self.session.wait_for_connection()).await.unwrap_or(false) {
-            return Err(self.hearing.refused("it refuses a session. Check user and password_file.".into()));
+            let reason = format!(
+                "no session could be opened within {} s. Check user, password_file, and how many clients the server allows.",
+                ANSWER.as_secs()
+            );
+            return Err(self.rows.hearing.refused(reason));
         }
         self.subscribe().await?;
-        self.hearing.begun();
+        self.rows.hearing.begun();
         let mut tick = interval(TICK);
         loop {
             tokio::select! {
@@ -175,85 +188,122 @@ impl Reader<'_> {
                     Some(event) => self.take(event).await?,
                     None => return Err(ListenError::Ended),
                 },
-                _ = tick.tick() => if self.hearing.tick()? { break },
+                _ = tick.tick() => {
+                    if self.rows.hearing.tick()? {
+                        break;
+                    }
+                    self.wake().await?;
+                }
             }
         }
         _ = timeout(Duration::from_secs(2), self.session.disconnect()).await;
-        self.hearing.end()
+        self.rows.hearing.end()
+    }
+
+    /// Subscribes anew if the server has stopped sending.
+    async fn wake(&mut self) -> Result<(), ListenError> {
+        if self.rows.hearing.is_lost() || self.heard.elapsed() <= DEAF {
+            return Ok(());
+        }
+        self.rows.hearing.interrupted("the server has stopped sending.")?;
+        self.again(&SessionConnectMode::NewSession(NodeId::null())).await
     }
 
     /// Asks the server to send what changes.
     async fn subscribe(&mut self) -> Result<(), ListenError> {
+        self.forget().await;
         self.number += 1;
         self.next = 1;
-        self.values.fill(None);
+        self.heard = Instant::now();
+        self.rows.values.fill(None);
+        let hearing = &self.rows.hearing;
         let notify = Notify { number: self.number, tell: self.tell.clone() };
         let answer = self.session.create_subscription(PUBLISHING, FORGOTTEN, ALIVE, 0, 0, true, notify).await;
-        self.subscription = answer.map_err(|why| self.hearing.refused(format!("{why}.")))?;
+        self.subscription = answer.map_err(|why| hearing.refused(format!("{why}.")))?;
         let item = |(handle, (_, node)): (usize, &(String, NodeId))| MonitoredItemCreateRequest {
             item_to_monitor: ReadValueId::from(node.clone()),
             monitoring_mode: MonitoringMode::Reporting,
             requested_parameters: MonitoringParameters {
                 client_handle: handle as u32 + 1,
-                sampling_interval: self.hearing.source.sampling,
+                sampling_interval: hearing.source.sampling,
                 queue_size: QUEUE,
                 discard_oldest: true,
                 ..Default::default()
             },
         };
-        let items: Vec<_> = self.nodes.iter().enumerate().map(item).collect();
+        let items: Vec<_> = self.rows.nodes.iter().enumerate().map(item).collect();
         let answer = self.session.create_monitored_items(self.subscription, TimestampsToReturn::Both, items).await;
-        let answers = answer.map_err(|why| self.hearing.refused(format!("{why}.")))?;
-        for ((name, _), answer) in self.nodes.iter().zip(&answers) {
+        let answers = answer.map_err(|why| hearing.refused(format!("{why}.")))?;
+        for ((name, _), answer) in self.rows.nodes.iter().zip(&answers) {
             let code = answer.result.status_code;
             if !code.is_good() {
                 let reason = format!("{name} cannot be read ({code}). Check the node in a browser such as UaExpert.");
-                return Err(self.hearing.refused(reason));
+                return Err(hearing.refused(reason));
             }
         }
         Ok(())
     }
 
+    /// Deletes the present subscription, so that the server keeps nothing for it any longer.
+    async fn forget(&mut self) {
+        let subscription = std::mem::take(&mut self.subscription);
+        if subscription != 0 {
+            // A server that does not know it has nothing to delete.
+            _ = self.session.delete_subscription(subscription).await;
+        }
+    }
+
     async fn take(&mut self, told: Told) -> Result<(), ListenError> {
         match told {
-            Told::Values(number, message) if number == self.number => self.message(message).await,
+            Told::Values(number, message) if number == self.number => {
+                self.heard = Instant::now();
+                self.message(message).await
+            }
             Told::Values(..) => Ok(()),
             Told::Session(Ok(SessionPollResult::Reconnected(mode))) => self.again(&mode).await,
             Told::Session(Ok(SessionPollResult::ConnectionLost(why) | SessionPollResult::ReconnectFailed(why))) => {
-                self.hearing.interrupted(&format!("{why}."))
+                self.rows.hearing.interrupted(&format!("{why}."))
             }
             Told::Session(Ok(_)) => Ok(()),
-            Told::Session(Err(why)) => Err(self.hearing.refused(format!("{why}."))),
+            Told::Session(Err(why)) => Err(self.rows.hearing.refused(format!("{why}."))),
         }
     }
 
     /// Goes on after the connection was made again.
     async fn again(&mut self, mode: &SessionConnectMode) -> Result<(), ListenError> {
         // The first connection.
-        if !self.hearing.is_lost() {
+        if !self.rows.hearing.is_lost() {
             return Ok(());
         }
-        let kept = match mode {
-            SessionConnectMode::ReactivatedSession(_) => true,
-            SessionConnectMode::NewSession(_) => self.transferred().await,
-        };
+        let kept = self.subscription != 0
+            && match mode {
+                SessionConnectMode::ReactivatedSession(_) => true,
+                SessionConnectMode::NewSession(_) => self.transferred().await,
+            };
         if kept {
             // Without being asked, the server sends nothing, and the crate asks only for subscriptions of this connection.
             self.session.trigger_publish_now();
-            self.hearing.resumed("The server has kept what changed meanwhile.");
+            self.resumed("The server has kept what changed in the meantime.");
             return Ok(());
         }
         // A server that has just been started may not know all its variables yet; it is then asked again.
         match self.subscribe().await {
-            Ok(()) => self.hearing.resumed("The server has kept nothing: what changed meanwhile is missing."),
+            Ok(()) => self.resumed("The server kept nothing, so what changed in the meantime is lost."),
             Err(why) => {
-                self.hearing.interrupted(&why.to_string())?;
+                self.rows.hearing.interrupted(&why.to_string())?;
+                self.forget().await;
                 self.number += 1;
                 tokio::time::sleep(AGAIN).await;
                 _ = self.tell.send(Told::Session(Ok(SessionPollResult::Reconnected(mode.clone()))));
             }
         }
         Ok(())
+    }
+
+    fn resumed(&mut self, kept: &str) {
+        self.heard = Instant::now();
+        self.rows.is_missing = false;
+        self.rows.hearing.resumed(kept);
     }
 
     /// Whether the server lets a new session have the subscription of the old one.
@@ -265,45 +315,72 @@ impl Reader<'_> {
     /// Takes a message after those that were lost before it, which the server keeps until they are acknowledged.
     async fn message(&mut self, message: NotificationMessage) -> Result<(), ListenError> {
         let lost = message.sequence_number.saturating_sub(self.next);
+        if lost > QUEUE {
+            self.rows.missing()?;
+        }
         for number in (self.next..message.sequence_number).take(if lost > QUEUE { 0 } else { lost as usize }) {
-            if let Ok(again) = self.session.republish(self.subscription, number).await {
-                self.rows(again)?;
+            match self.session.republish(self.subscription, number).await {
+                Ok(again) => self.rows.take(again)?,
+                Err(_) => self.rows.missing()?,
             }
         }
         let has_values = message.notification_data.as_ref().is_some_and(|data| !data.is_empty());
         // One that only says that the server is alive has the number of the next.
         self.next = message.sequence_number.saturating_add(u32::from(has_values));
-        self.rows(message)
+        self.rows.take(message)
     }
+}
 
+/// Makes rows of values.
+struct Rows<'a> {
+    hearing: Hearing<'a>,
+    nodes: Vec<(String, NodeId)>,
+    /// What each variable is; `None` if it is not known since we subscribed.
+    values: Vec<Option<Value>>,
+    /// Time of the last row, and when the server sent it by its own clock, µs since 1970.
+    last: Option<[i64; 2]>,
+    /// Whether it was said that values are missing, since the connection was last made.
+    is_missing: bool,
+}
+
+impl Rows<'_> {
     /// Writes the rows of a message: one for each time at which something changed.
-    fn rows(&mut self, message: NotificationMessage) -> Result<(), ListenError> {
+    fn take(&mut self, message: NotificationMessage) -> Result<(), ListenError> {
         let sent = micros(&message.publish_time);
+        let now = self.last.map_or(sent, |[time, at]| time + (sent - at));
+        let mut is_first: Vec<bool> = self.values.iter().map(Option::is_none).collect();
+        let mut is_alive = true;
         let mut changes: BTreeMap<i64, Vec<(usize, DataValue)>> = BTreeMap::new();
         let data = message.notification_data.into_iter().flatten();
         let data = data.filter_map(|data| data.into_inner_as::<DataChangeNotification>());
-        let mut is_first: Vec<bool> = self.values.iter().map(Option::is_none).collect();
         for item in data.flat_map(|data| data.monitored_items.into_iter().flatten()) {
+            is_alive = false;
             let index = (item.client_handle as usize).wrapping_sub(1);
             let Some(first) = is_first.get_mut(index) else { continue };
             let stamp = item.value.source_timestamp.or(item.value.server_timestamp);
-            let mut time = stamp.as_ref().map_or(sent, micros);
-            if std::mem::take(first) {
-                time = time.max(sent - OLD).max(self.last);
+            let time = stamp.as_ref().map_or(now, micros);
+            if std::mem::take(first) && self.is_old(time, now) {
+                self.change(index, item.value)?;
+            } else {
+                changes.entry(time).or_default().push((index, item.value));
             }
-            changes.entry(time).or_default().push((index, item.value));
         }
-        let is_alive = changes.is_empty();
         for (time, values) in changes {
+            let changed: Vec<usize> = values.iter().map(|(index, _)| *index).collect();
             for (index, value) in values {
                 self.change(index, value)?;
             }
-            self.row(time)?;
+            self.row([time, sent], &changed)?;
         }
-        if is_alive && sent > self.last && self.values.iter().any(Option::is_some) {
-            self.row(sent)?;
+        if is_alive && self.last.is_none_or(|[last, _]| now > last) && self.values.iter().any(Option::is_some) {
+            self.row([now, sent], &[])?;
         }
         Ok(())
+    }
+
+    /// Whether a first value was there before we listened.
+    fn is_old(&self, time: i64, now: i64) -> bool {
+        time < now - OLD || self.last.is_some_and(|[last, _]| time < last)
     }
 
     /// Takes a value of a variable.
@@ -311,32 +388,44 @@ impl Reader<'_> {
         let name = &self.nodes[index].0;
         self.hearing.heard(name);
         self.values[index] = Some(Value::Null);
-        match value.status {
-            Some(status) if !status.is_good() => self.hearing.unreadable(name, &format!("the server says {status}.")),
-            _ => match plain(value.value) {
-                Some(value) => {
-                    self.values[index] = Some(value);
-                    Ok(())
-                }
-                None => self.hearing.unreadable(name, "it is neither a number nor a text."),
-            },
+        let status = value.status.unwrap_or(StatusCode::Good);
+        if !status.is_good() {
+            return self.hearing.unreadable(name, &format!("the server says {status}."));
         }
+        match plain(value.value) {
+            Some(value) => self.values[index] = Some(value),
+            None => self.hearing.unreadable(name, "it is neither a number nor a text.")?,
+        }
+        // The queue of the server was full.
+        if status.overflow() { self.missing() } else { Ok(()) }
     }
 
-    /// Writes a row with what all variables are.
-    fn row(&mut self, time: i64) -> Result<(), ListenError> {
+    /// Says that some values cannot be had any more.
+    fn missing(&mut self) -> Result<(), ListenError> {
+        if std::mem::replace(&mut self.is_missing, true) {
+            return Ok(());
+        }
+        self.hearing.missing("the server no longer had some values: rows are missing.")
+    }
+
+    /// Writes a row with the numbers that all variables are, and with the words that have changed. The server sent it by its own clock.
+    fn row(&mut self, [time, sent]: [i64; 2], changed: &[usize]) -> Result<(), ListenError> {
         let mut cells = Vec::new();
         let mut faults = Vec::new();
         for column in &self.hearing.source.columns {
             let place = self.nodes.iter().position(|(name, _)| Some(name) == column.from.as_ref());
-            let value = place.and_then(|place| self.values[place].as_ref());
+            let is_new = |place: &usize| !column.is_text() || changed.contains(place);
+            let value = place.filter(is_new).and_then(|place| self.values[place].as_ref());
             let cell = value.map_or(Ok(None), |value| payload::cell(value, column));
             faults.extend(cell.as_ref().err().cloned().zip(column.from.clone()));
             cells.push(cell.ok().flatten().unwrap_or_default());
         }
-        if let Some(time_text) = payload::micros(time) {
-            self.hearing.row(&time_text, &cells)?;
-            self.last = self.last.max(time);
+        if let Some(text) = payload::micros(time) {
+            self.hearing.row(&text, &cells)?;
+            // A clock that was set back goes on from there.
+            if self.last.is_none_or(|[last, _]| time >= last || time < last - OLD) {
+                self.last = Some([time, sent]);
+            }
         }
         faults.iter().try_for_each(|(reason, name)| self.hearing.unreadable(name, reason))
     }

@@ -132,6 +132,9 @@ impl Source {
             (None, Some(_)) => return Err("password_file needs user.".to_owned()),
             (user, secret) => user.map(|user| (user, secret.unwrap_or_default().trim_end().to_owned())),
         };
+        if keys.client.as_deref() == Some("") {
+            return Err("client is empty: give a name, or leave the key out.".to_owned());
+        }
         let is_mqtt = address != Address::OpcUa;
         if !is_mqtt && keys.time.is_some() {
             return Err("time is only for MQTT: an OPC UA server gives each value its own time.".to_owned());
@@ -194,6 +197,17 @@ fn columns(keys: BTreeMap<String, ColumnKeys>, is_mqtt: bool) -> Result<Vec<Colu
         columns.push(column(&name, keys, is_mqtt).map_err(|reason| format!("columns.{name}: {reason}"))?);
     }
     columns.sort_by_key(|column| !column.is_text());
+    for (k, column) in columns.iter().enumerate() {
+        let same = |other: &&Column| {
+            Quantity::named(&other.name).is_some_and(|own| Some(own) == Quantity::named(&column.name))
+        };
+        if let Some(other) = columns[..k].iter().find(same) {
+            return Err(format!(
+                "columns.{0} and columns.{1} are the same quantity. Leave one out.",
+                other.name, column.name
+            ));
+        }
+    }
     Ok(columns)
 }
 

@@ -41,9 +41,14 @@ impl<'a> Watch<'a> {
         self.heard.store(self.begun.elapsed().as_millis() as u64, Ordering::Relaxed);
     }
 
-    /// Ends listening to all sources.
+    /// Ends listening to all sources, of which one has failed.
     pub(crate) fn end(&self) {
         self.ended.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether another source has failed.
+    pub(crate) fn is_failed(&self) -> bool {
+        self.ended.load(Ordering::Relaxed)
     }
 
     /// Whether to end.
@@ -51,9 +56,6 @@ impl<'a> Watch<'a> {
         let elapsed = self.begun.elapsed().as_secs_f64();
         let quiet = elapsed - self.heard.load(Ordering::Relaxed) as f64 / 1000.0;
         let past = |limit: Option<f64>, seconds: f64| limit.is_some_and(|limit| seconds >= limit);
-        self.ended.load(Ordering::Relaxed)
-            || past(self.until.seconds, elapsed)
-            || past(self.until.idle, quiet)
-            || (self.until.stopped)()
+        self.is_failed() || past(self.until.seconds, elapsed) || past(self.until.idle, quiet) || (self.until.stopped)()
     }
 }

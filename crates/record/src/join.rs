@@ -113,10 +113,20 @@ fn row(
     }
 }
 
+/// Events of `beadwright listen`, whose notes are not those of an operator.
+const OWN: [&str; 3] = ["resumed", "silent", "unreadable"];
+
 /// Puts each note of an operator to the pass during or before which it was written.
 fn notes(record: &mut Record, welded: &[Welded], logs: &[Aligned<'_>]) {
     for log in logs {
-        let noted = |event: &Event| !event.note.is_empty() && event.what != What::Interrupted;
+        let noted = |event: &Event| {
+            let is_own = match &event.what {
+                What::Interrupted => true,
+                What::Other(word) => OWN.contains(&word.as_str()),
+                _ => false,
+            };
+            !event.note.is_empty() && !is_own
+        };
         for (row, event) in log.source.events.iter().filter(|(_, event)| noted(event)) {
             let time = log.time(*row);
             let pass =

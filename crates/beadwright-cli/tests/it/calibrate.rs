@@ -102,6 +102,6 @@ fn a_cell_takes_what_was_measured_and_keeps_its_comments() {
     fs::write(at.join("base.csv"), "touch,x,y,z\norigin,900,100,400\nx,900,300,420\ntop,850,150,400\n").unwrap();
     let refused = run(at, &["calibrate", "base", "base.csv", "--write", "mine.toml"]);
     let said = String::from_utf8(refused.stderr).unwrap();
-    assert!(!refused.status.success() && said.contains("the frame leans by 8.0°"), "{said}");
+    assert!(!refused.status.success() && said.contains("the frame is tilted by 8.0°"), "{said}");
     assert_eq!(fs::read_to_string(at.join("mine.toml")).unwrap(), after);
 }

@@ -10,7 +10,8 @@ use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Write as _};
 use std::net::TcpListener;
 use std::path::Path;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
 /// A program that ends with the test.
@@ -86,7 +87,8 @@ fn welded(at: &Path) -> (Vec<Row>, usize) {
 /// The numbers in a log, in its order, with repeats of the same row left out.
 fn numbers(at: &Path) -> Vec<usize> {
     let text = fs::read_to_string(at.join("logs/power.csv")).unwrap();
-    assert!(text.ends_with('\n'), "the log ends with a whole line");
+    // A line may be half written while it is read.
+    let text = &text[..text.rfind('\n').map_or(0, |end| end + 1)];
     let head: Vec<&str> = text.lines().next().unwrap().split(',').collect();
     let column = head.iter().position(|name| *name == "n").unwrap();
     let cell = |line: &str| line.rsplit(',').nth(head.len() - 1 - column)?.parse::<f64>().ok();
@@ -94,6 +96,13 @@ fn numbers(at: &Path) -> Vec<usize> {
     numbers.dedup();
     numbers.retain(|number| *number > 0);
     numbers
+}
+
+/// Ends listening, and gives the numbers in the log, which ends with a whole line.
+fn all_numbers(at: &Path, listener: Running) -> Vec<usize> {
+    ctrl_c(listener);
+    assert!(fs::read_to_string(at.join("logs/power.csv")).unwrap().ends_with('\n'));
+    numbers(at)
 }
 
 /// Whether each number is there once, and in order.
@@ -139,8 +148,17 @@ fn mosquitto() -> Command {
     Command::new(if own.exists() { own } else { Path::new("mosquitto") })
 }
 
-/// A broker that keeps what it has accepted.
-fn broker(at: &Path, port: u16) -> Running {
+/// A broker on a port of its own.
+fn new_broker(at: &Path) -> (Running, u16) {
+    let own = |_| {
+        let port = free_port();
+        Some((broker(at, port)?, port))
+    };
+    (0..5).find_map(own).unwrap()
+}
+
+/// A broker that keeps what it has accepted; none if it ends at once, as when another program has taken the port.
+fn broker(at: &Path, port: u16) -> Option<Running> {
     let user = Command::new("id").arg("-un").output().unwrap().stdout;
     let settings = format!(
         "listener {port} 127.0.0.1\nallow_anonymous true\npersistence true\npersistence_location {0}/\n\
@@ -150,9 +168,17 @@ fn broker(at: &Path, port: u16) -> Running {
         String::from_utf8(user).unwrap().trim()
     );
     fs::write(at.join("broker.conf"), settings).unwrap();
-    let running = mosquitto().arg("-c").arg(at.join("broker.conf")).stderr(Stdio::null()).spawn().unwrap();
-    wait_for("the broker", || std::net::TcpStream::connect(("127.0.0.1", port)).is_ok());
-    Running(running)
+    let child = mosquitto().arg("-c").arg(at.join("broker.conf")).stderr(Stdio::null()).spawn();
+    let mut running = Running(child.unwrap());
+    let begun = Instant::now();
+    while running.0.try_wait().unwrap().is_none() {
+        if std::net::TcpStream::connect(("127.0.0.1", port)).is_ok() {
+            return Some(running);
+        }
+        assert!(begun.elapsed() < Duration::from_secs(40), "the broker does not answer");
+        std::thread::sleep(Duration::from_millis(30));
+    }
+    None
 }
 
 /// Publishes rows; whether the broker accepted them all.
@@ -175,8 +201,9 @@ fn all_that_a_broker_accepted_is_in_the_log_once_though_both_were_killed() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let (at, port) = (folder.path(), free_port());
+    let at = folder.path();
     let (rows, passes) = welded(at);
+    let (running, port) = new_broker(at);
     let source = format!(
         "url = \"mqtt://127.0.0.1:{port}\"\ntime = {{ field = \"t\", unit = \"unix\" }}\n[columns]\n\
          n = {{ topic = \"{TOPIC}\", field = \"n\" }}\ncurrent = {{ topic = \"{TOPIC}\", field = \"power.i\", unit = \"A\" }}\n"
@@ -186,7 +213,6 @@ fn all_that_a_broker_accepted_is_in_the_log_once_though_both_were_killed() {
     let (first, lost, second, third) =
         (&rows[..part], &rows[part..part + 50], &rows[part + 50..2 * part], &rows[2 * part..]);
 
-    let running = broker(at, port);
     let listener = listen(at, "power.toml", &[]);
     assert!(publish(port, &first[..part - 20]));
     // One by one, and the broker is killed as soon as it has accepted the last.
@@ -194,7 +220,7 @@ fn all_that_a_broker_accepted_is_in_the_log_once_though_both_were_killed() {
     running.kill();
     assert!(!publish(port, &lost[..1]), "nothing is accepted while it is dead");
     std::thread::sleep(Duration::from_millis(700));
-    let running = broker(at, port);
+    let running = broker(at, port).unwrap();
     assert!(publish(port, second));
     wait_for("the second part", || numbers(at).len() == first.len() + second.len());
     listener.kill();
@@ -204,8 +230,7 @@ fn all_that_a_broker_accepted_is_in_the_log_once_though_both_were_killed() {
     assert!(publish(port, &third[100..]));
     let expected: Vec<usize> = [first, second, third].concat().iter().map(|row| row.1).collect();
     wait_for("the third part", || numbers(at).len() >= expected.len());
-    ctrl_c(listener);
-    let mut seen = numbers(at);
+    let mut seen = all_numbers(at, listener);
     seen.sort_unstable();
     each_once(&seen, &expected);
     let kinds = found(at, passes);
@@ -245,6 +270,9 @@ fn what_cannot_be_listened_to_is_refused_with_its_remedy() {
         fails("url = \"opc.tcp://x\"\n[columns]\ncurrent = { node = \"Power\" }\n").contains("is not a node such as")
     );
     assert!(fails("[columns]\n").contains("url"));
+    assert!(fails(&format!("url = \"mqtt://x\"\nclient = \"\"\n{column}")).contains("client is empty: give a name"));
+    let said = fails(&format!("url = \"mqtt://x\"\n{column}i = {{ topic = \"b\" }}\n"));
+    assert!(said.contains("columns.current and columns.i are the same quantity"), "{said}");
 }
 
 #[test]
@@ -253,13 +281,13 @@ fn messages_that_cannot_be_read_and_silent_topics_are_named() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let (at, port) = (folder.path(), free_port());
+    let at = folder.path();
+    let (_running, port) = new_broker(at);
     let source = format!(
         "url = \"mqtt://127.0.0.1:{port}\"\nsilent = 1\n[columns]\ncurrent = {{ topic = \"i\" }}\nvoltage = {{ topic = \"u\" }}\n"
     );
     fs::write(at.join("power.toml"), source).unwrap();
-    let _running = broker(at, port);
-    let listener = listen(at, "power.toml", &["--until-idle", "3"]);
+    let listener = listen(at, "power.toml", &["--until-idle", "15"]);
     for payload in ["180,5", "much", "181"] {
         let arguments = ["-h", "127.0.0.1", "-p", &port.to_string(), "-t", "i", "-m", payload];
         assert!(Command::new("mosquitto_pub").args(arguments).status().unwrap().success());
@@ -280,7 +308,8 @@ fn a_log_goes_on_after_a_half_line_and_ctrl_c_ends_it_whole() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    let (at, port) = (folder.path(), free_port());
+    let at = folder.path();
+    let (_running, port) = new_broker(at);
     let source = |name: &str| {
         format!(
             "url = \"mqtt://127.0.0.1:{port}\"\ntime = {{ field = \"at\", unit = \"iso\" }}\n[columns]\n\
@@ -288,15 +317,20 @@ fn a_log_goes_on_after_a_half_line_and_ctrl_c_ends_it_whole() {
         )
     };
     fs::write(at.join("power.toml"), source("temperature")).unwrap();
-    let _running = broker(at, port);
     fs::create_dir(at.join("logs")).unwrap();
     // As a power cut leaves it.
     let before = "time,event,note,temperature\n2026-11-28T10:00:00.000000Z,,,180\n2026-11-28T10:00:01.0";
     fs::write(at.join("logs/power.csv"), before).unwrap();
-    let listener = listen(at, "power.toml", &[]);
+    // Another source fails: the log stays as it is, and the broker keeps what is published until listening begins again.
+    let other = format!("url = \"mqtt://127.0.0.1:{}\"\n[columns]\ncurrent = {{ topic = \"t\" }}\n", free_port());
+    fs::write(at.join("other.toml"), other).unwrap();
+    let said = refused(at, &["listen", "power.toml", "other.toml", "-o", "logs"], 1);
+    assert!(said.contains("Check whether the broker runs"), "{said}");
+    assert!(!fs::read_to_string(at.join("logs/power.csv")).unwrap().contains("interrupted"));
     let payload = "{\"at\":\"2026-11-28T11:00:05.5+01:00\",\"values\":[200.5,1]}";
     let arguments = ["-h", "127.0.0.1", "-p", &port.to_string(), "-q", "1", "-t", "t", "-m", payload];
     assert!(Command::new("mosquitto_pub").args(arguments).status().unwrap().success());
+    let listener = listen(at, "power.toml", &[]);
     let log = || fs::read_to_string(at.join("logs/power.csv")).unwrap();
     wait_for("the row", || log().ends_with("2026-11-28T10:00:05.500000Z,,,200.5\n"));
     ctrl_c(listener);
@@ -318,7 +352,7 @@ fn a_log_goes_on_after_a_half_line_and_ctrl_c_ends_it_whole() {
 struct Server {
     running: Running,
     rows: ChildStdin,
-    said: BufReader<ChildStdout>,
+    said: Receiver<String>,
     changed: bool,
 }
 
@@ -331,7 +365,10 @@ impl Server {
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/opcua_server.py");
         let child = python.args([script, &port.to_string()]).stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = child.stderr(Stdio::null()).spawn().unwrap();
-        let (rows, said) = (child.stdin.take().unwrap(), BufReader::new(child.stdout.take().unwrap()));
+        let (rows, lines) = (child.stdin.take().unwrap(), BufReader::new(child.stdout.take().unwrap()).lines());
+        let (tell, said) = channel();
+        // Ends with the server.
+        std::thread::spawn(move || lines.map_while(Result::ok).try_for_each(|line| tell.send(line)));
         let mut server = Self { running: Running(child), rows, said, changed: false };
         server.wait_for("ready", 1);
         server
@@ -339,26 +376,24 @@ impl Server {
 
     /// Sets the variables row by row.
     fn set(&mut self, begin: f64, rows: &[Row]) {
-        let mut lines = String::new();
-        for (time, number, current) in rows {
-            writeln!(lines, "{:.3},n={number},current={current}", begin + time).unwrap();
-        }
-        self.rows.write_all(lines.as_bytes()).unwrap();
-        self.wait_for("done", rows.len());
+        let line = |(time, number, current): &Row| format!("{:.3},n={number},current={current}", begin + time);
+        self.tell(&rows.iter().map(line).collect::<Vec<_>>());
         // So long that all of it is sent.
         std::thread::sleep(Duration::from_millis(800));
     }
 
     fn cut(&mut self) {
-        self.rows.write_all(b"cut\n").unwrap();
-        self.wait_for("done", 1);
+        self.tell(&["cut".to_owned()]);
+    }
+
+    fn tell(&mut self, lines: &[String]) {
+        self.rows.write_all((lines.join("\n") + "\n").as_bytes()).unwrap();
+        self.wait_for("done", lines.len());
     }
 
     fn wait_for(&mut self, word: &str, mut count: usize) {
-        let mut line = String::new();
         while count > 0 {
-            line.clear();
-            assert!(self.said.read_line(&mut line).unwrap() > 0, "the server ended");
+            let line = self.said.recv_timeout(Duration::from_secs(40)).expect("the server ended or hangs");
             self.changed |= ["written", "called"].contains(&line.trim());
             count -= usize::from(line.trim() == word);
         }
@@ -411,14 +446,41 @@ fn a_server_is_heard_again_after_its_connections_were_cut_and_after_it_was_kille
     assert!(!changed && !lost.is_empty());
     let mut server = Server::new(port);
     wait_for("the server to be heard again", || {
-        fs::read_to_string(at.join("said.txt")).unwrap().contains("kept nothing")
+        fs::read_to_string(at.join("said.txt")).unwrap().contains("The server kept nothing")
     });
     server.set(begin, third);
     let expected: Vec<usize> = [first, second, third].concat().iter().map(|row| row.1).collect();
     wait_for("the third part", || numbers(at).len() >= expected.len());
-    ctrl_c(listener);
+    each_once(&all_numbers(at, listener), &expected);
     assert!(!server.changed, "nothing was written or called");
-    each_once(&numbers(at), &expected);
     let kinds = found(at, passes);
     assert!(kinds.contains("interrupted") && kinds.contains("gap"), "{kinds:?}");
+}
+
+#[test]
+fn words_are_written_once_and_all_rows_have_the_clock_of_the_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let (at, port) = (folder.path(), free_port());
+    if !has_asyncua(at) {
+        return;
+    }
+    let node = |name: &str| format!("{name} = {{ node = \"ns=2;s=Power.{name}\" }}\n");
+    let columns = ["n", "current", "event"].map(node).concat();
+    fs::write(at.join("power.toml"), format!("url = \"opc.tcp://127.0.0.1:{port}/\"\n[columns]\n{columns}")).unwrap();
+    let mut server = Server::new(port);
+    let listener = listen(at, "power.toml", &[]);
+    let log = || fs::read_to_string(at.join("logs/power.csv")).unwrap();
+    // The clock of the cell is years behind that of the server: 2023-11-14T22:13:20Z.
+    let begin = 1.7e9;
+    let told = ["event=arc_on", "n=1,current=150", "n=2,current=151", "n=3,current=0,event=arc_off"];
+    let line = |(step, told): (usize, &&str)| format!("{:.3},{told}", begin + step as f64 / 10.0);
+    server.tell(&told.iter().enumerate().map(line).collect::<Vec<_>>());
+    // Rows with the same values go on.
+    wait_for("rows that go on", || log().rsplit("arc_off").next().is_some_and(|rest| rest.lines().count() > 4));
+    ctrl_c(listener);
+    let log = log();
+    assert_eq!((log.matches("arc_on").count(), log.matches("arc_off").count()), (1, 1), "{log}");
+    let rows: Vec<&str> =
+        log[log.find('\n').unwrap() + 1..].lines().skip_while(|row| !row.contains("arc_on")).collect();
+    assert!(rows.is_sorted() && rows.iter().all(|row| row.starts_with("2023-11-14T22:13:2")), "{log}");
 }

@@ -1,7 +1,8 @@
 //! What records of builds say about the values of a profile: values with their intervals, and a page that compares them.
 //!
 //! A value is the mean over undisturbed passes, without those that lie far from the others; its interval is that of the mean (Student's t,
-//! 95 %). It holds the scatter from pass to pass, not the error of the meters.
+//! 95 %). It holds the scatter from pass to pass, not the error of the meters. What was measured over what was planned is multiplied by the
+//! value of the profile with which the part was planned, which the record holds: a profile that was corrected since is not corrected twice.
 
 use super::Quantity;
 use super::sealed::{Broken, verify};
@@ -10,7 +11,7 @@ use crate::number::fixed;
 use crate::process::Follow;
 use crate::profile::Profile;
 use crate::report::sheet::{Row, Sheet};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// A pass as it was welded.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -25,6 +26,39 @@ pub struct AsWelded {
     tries: usize,
     before: [Option<f64>; 2],
     quantities: Vec<(Quantity, Option<f64>, Option<Mean>)>,
+    /// Of the profile with which it was planned.
+    #[serde(skip)]
+    values: Values,
+}
+
+/// Values of the profile with which a part was planned, by the names of their keys.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct Values {
+    wire_feed_speed: Option<f64>,
+    current: Option<f64>,
+    voltage: Option<f64>,
+    arc_efficiency: Option<f64>,
+}
+
+impl Values {
+    pub(super) fn of(profile: &Profile) -> Self {
+        let process = &profile.process;
+        Self {
+            wire_feed_speed: Some(process.wire_feed_speed),
+            current: process.current,
+            voltage: process.voltage,
+            arc_efficiency: profile.heat.as_ref().map(|heat| heat.arc_efficiency),
+        }
+    }
+
+    fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        match quantity {
+            Quantity::Feed => self.wire_feed_speed,
+            Quantity::Current => self.current,
+            Quantity::Voltage => self.voltage,
+            _ => None,
+        }
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -51,6 +85,14 @@ impl AsWelded {
         Some(self.measured(quantity)? / self.planned(quantity).filter(|planned| *planned > 0.0)?)
     }
 
+    /// What the profile should have said, so that what was measured would have been planned. Without a plan, it is what was measured.
+    fn corrected(&self, quantity: Quantity) -> Option<f64> {
+        match self.planned(quantity) {
+            Some(_) => Some(self.ratio(quantity)? * self.values.quantity(quantity)?),
+            None => self.measured(quantity),
+        }
+    }
+
     /// Welded in one go, and long enough to be steady.
     fn is_undisturbed(&self) -> bool {
         self.arcs == 1 && self.tries == 0 && self.burned >= STEADY
@@ -75,6 +117,8 @@ const WARM: f64 = 30.0;
 pub fn as_welded(text: &str) -> Result<Vec<AsWelded>, Broken> {
     #[derive(Deserialize)]
     struct File {
+        #[serde(default)]
+        values: Values,
         passes: Vec<Line>,
     }
     #[derive(Deserialize)]
@@ -87,7 +131,8 @@ pub fn as_welded(text: &str) -> Result<Vec<AsWelded>, Broken> {
         return Err(broken);
     }
     let file: File = serde_json::from_str(text).map_err(|_| Broken::Form)?;
-    Ok(file.passes.into_iter().map(|line| line.pass).collect())
+    let values = file.values;
+    Ok(file.passes.into_iter().map(|line| AsWelded { values, ..line.pass }).collect())
 }
 
 /// A mean with its 95 % interval.
@@ -184,23 +229,28 @@ impl Learnt {
     }
 
     fn feed(&mut self, used: &[&AsWelded], profile: &Profile) {
-        let ratio = Estimate::of(used.iter().filter_map(|pass| pass.ratio(Quantity::Feed)));
-        match ratio {
+        // Programs command it: another value would move the command, not the feeder.
+        if profile.process.follow == Follow::WireFeed {
+            match Estimate::of(used.iter().filter_map(|pass| pass.ratio(Quantity::Feed))) {
+                None => self.unknown.push(lacks("Wire feed", "wire_feed_speed")),
+                Some(ratio) => self.seen.push(format!(
+                    "The wire was fed at {} % of what the programs set. Calibrate the feeder; the profile is not changed.",
+                    shown(ratio.times(100.0), 1)
+                )),
+            }
+            return;
+        }
+        match Estimate::of(used.iter().filter_map(|pass| pass.corrected(Quantity::Feed))) {
             None => self.unknown.push(lacks("Wire feed", "wire_feed_speed")),
-            // Programs command it: another value would move the command, not the feeder.
-            Some(ratio) if profile.process.follow == Follow::WireFeed => self.seen.push(format!(
-                "The wire was fed at {} % of what the programs set. Calibrate the feeder; the profile is not changed.",
-                shown(ratio.times(100.0), 1)
-            )),
-            Some(ratio) => {
+            Some(after) => {
                 let before = profile.process.wire_feed_speed;
-                self.lessons.push(Lesson::new("process.wire_feed_speed", "m/min", Some(before), ratio.times(before)));
+                self.lessons.push(Lesson::new("process.wire_feed_speed", "m/min", Some(before), after));
             }
         }
     }
 
     fn electric(&mut self, used: &[&AsWelded], profile: &Profile) {
-        let mean = |quantity| Estimate::of(used.iter().filter_map(|pass| pass.measured(quantity)));
+        let mean = |quantity| Estimate::of(used.iter().filter_map(|pass| pass.corrected(quantity)));
         let process = &profile.process;
         for (key, quantity, before) in [
             ("process.current", Quantity::Current, process.current),
@@ -241,18 +291,17 @@ impl Learnt {
             self.unknown.push("Heat: the profile has no section [heat].".into());
             return;
         };
-        let rise = |pass: &&AsWelded| {
+        let efficiency = |pass: &&AsWelded| {
             let [planned, measured] = pass.before;
             let [planned, measured] = [planned? - heat.ambient, measured? - heat.ambient];
-            (planned >= WARM).then_some(measured / planned)
+            (planned >= WARM).then_some(measured / planned * pass.values.arc_efficiency?)
         };
-        match Estimate::of(used.iter().filter_map(rise)) {
+        match Estimate::of(used.iter().filter_map(efficiency)) {
             None => self.unknown.push(
                 "Efficiency of the arc: it needs a pyrometer in the logs, and records made with --temperatures.".into(),
             ),
-            Some(ratio) => {
+            Some(after) => {
                 let before = heat.arc_efficiency;
-                let after = ratio.times(before);
                 if (0.05..=1.0).contains(&after.value) {
                     self.lessons.push(Lesson::new("heat.arc_efficiency", "", Some(before), after));
                 } else {

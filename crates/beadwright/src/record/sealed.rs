@@ -4,6 +4,7 @@
 //! the hash before it. Then follow the hashes of the other files, and the seal: the hash of all text before it. Whoever changes the
 //! record can compute all hashes again; only a seal that is kept elsewhere shows that.
 
+use super::learnt::Values;
 use super::{FileHash, JSON, Part, Totals, chain, link, sha256};
 use serde::Deserialize;
 use serde_json::json;
@@ -43,6 +44,7 @@ impl Chained {
             "trace": trace,
             "inputs": part.inputs,
             "settings": part.settings,
+            "values": Values::of(part.profile),
             "planned": Totals::planned(part),
             "recorded": Totals::recorded(part),
             "logs": part.record.logs,

@@ -2,6 +2,7 @@
 
 use crate::common;
 
+use beadwright::process::LayerProcess;
 use beadwright::{Metrics, Profile};
 use common::{planned, profile_by};
 
@@ -52,4 +53,22 @@ fn emissions_and_energy_are_those_of_wire_gas_and_electricity() {
     assert!((m.energy_kwh.unwrap() - kwh).abs() < 1e-9, "{kwh}");
     assert!((m.co2_kg.unwrap() - matter - 0.4 * kwh).abs() < 1e-9);
     assert!((m.cost.unwrap() - 0.3 * kwh).abs() < 1e-9);
+    // Other layers, another current; without that of the profile, it must be known of all layers that are welded.
+    let row = |from, to, current| LayerProcess {
+        from,
+        to,
+        deposition_speed: profile.process.deposition_speed,
+        current: Some(current),
+        job: None,
+    };
+    let rows = vec![row(1, 2, 240.0), row(3, 1000, 120.0)];
+    profile.process.layers = rows.clone();
+    let mut first = Metrics::new(&profile);
+    plan.layers.iter().filter(|layer| layer.index < 2).for_each(|layer| first.add(layer));
+    let more = kwh + 1.8 / 0.8 * first.arc_time_s / 3600.0;
+    assert!((totals(&profile).energy_kwh.unwrap() - more).abs() < 1e-3 * more, "{more}");
+    profile.process.current = None;
+    assert!((totals(&profile).energy_kwh.unwrap() - more).abs() < 1e-3 * more);
+    profile.process.layers.pop();
+    assert_eq!(totals(&profile).energy_kwh, None);
 }

@@ -27,4 +27,4 @@ pub use factor::{Factor, FactorError, Parameter};
 pub use measure::{BeadSize, MeasureError, measured};
 pub use plate::{Layout, Nominal, Placed, Plate, PlateError, Series};
 pub use shape::Shape;
-pub use sheet::{SheetError, TrialWelded, as_measured, csv, filled};
+pub use sheet::{SheetError, TrialWelded, as_measured, csv, filled, plates};

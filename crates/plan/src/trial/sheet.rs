@@ -84,24 +84,48 @@ pub fn as_measured(sheet: &str, plate: usize, trials: &[TrialWelded]) -> Result<
     with_cells(sheet, plate, &trials.iter().map(cells).collect::<Vec<_>>())
 }
 
+/// The number of plates on which the trials of a sheet are welded.
+///
+/// # Errors
+/// [`SheetError`] if the text is no sheet of trials.
+pub fn plates(sheet: &str) -> Result<usize, SheetError> {
+    let Table { plate, rows, .. } = Table::of(sheet)?;
+    let number = |(_, cells): &(usize, Vec<String>)| cells.get(plate)?.parse().ok();
+    Ok(rows.iter().filter_map(number).max().unwrap_or(0))
+}
+
+/// A sheet, cell by cell.
+struct Table {
+    between: char,
+    columns: Vec<String>,
+    /// The column with the plates.
+    plate: usize,
+    /// The cells of each trial, with the number of its line, from 0.
+    rows: Vec<(usize, Vec<String>)>,
+}
+
+impl Table {
+    fn of(sheet: &str) -> Result<Self, SheetError> {
+        let mut lines = sheet.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+        let (at, head) = lines.next().ok_or(SheetError::Column("plate"))?;
+        let between = separator(head);
+        let columns = fields(head, between, at + 1)?;
+        let column = |name: &str| columns.iter().position(|own| own == name);
+        let missing = ["plate", "width_mm", "height_mm"].into_iter().find(|name| column(name).is_none());
+        let (None, Some(plate)) = (missing, column("plate")) else {
+            return Err(SheetError::Column(missing.unwrap_or("plate")));
+        };
+        let cells = |(number, line)| Ok((number, fields(line, between, number + 1)?));
+        let rows = lines.map(cells).collect::<Result<_, LibraryError>>()?;
+        Ok(Self { between, columns, plate, rows })
+    }
+}
+
 /// The sheet with other numbers in some columns of the trials of a plate; columns that it lacks are left out.
 fn with_cells(sheet: &str, plate: usize, trials: &[Vec<(&'static str, f64)>]) -> Result<String, SheetError> {
-    let mut lines = sheet.lines().enumerate().filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
-    let (at, head) = lines.next().ok_or(SheetError::Column("plate"))?;
-    let between = separator(head);
-    let columns = fields(head, between, at + 1)?;
+    let Table { between, columns, plate: plates, mut rows } = Table::of(sheet)?;
     let column = |name: &str| columns.iter().position(|own| own == name);
-    let missing = ["plate", "width_mm", "height_mm"].into_iter().find(|name| column(name).is_none());
-    let (None, Some(plates)) = (missing, column("plate")) else {
-        return Err(SheetError::Column(missing.unwrap_or("plate")));
-    };
-    let mut rows = Vec::new();
-    for (number, line) in lines {
-        let cells = fields(line, between, number + 1)?;
-        if cells.get(plates).is_some_and(|own| own.parse() == Ok(plate)) {
-            rows.push((number, cells));
-        }
-    }
+    rows.retain(|(_, cells)| cells.get(plates).is_some_and(|own| own.parse() == Ok(plate)));
     if rows.len() != trials.len() {
         return Err(SheetError::Count { plate, sheet: rows.len(), plan: trials.len() });
     }

@@ -112,10 +112,13 @@ fn notes_and_temperatures_come_to_their_pass() {
     let cell = Cell::new(&plan, 2);
     let mut controller = cell.controller_log(&TRUE, true);
     controller += &format!("{};note;;;nozzle cleaned\n", format!("{:.1}", cell.done[5].start - 1.0).replace('.', ","));
+    // What the listener says of itself is no note of an operator.
+    controller += &format!("{};resumed;;;restored\n", format!("{:.1}", cell.done[5].start - 0.5).replace('.', ","));
     let logs = [log("controller.csv", &controller), log("pyrometer.csv", &cell.pyrometer_log(&TRUE, 10.0))];
     let record = join(&plan, &logs, &Settings { hottest: Some(160.0), ..Settings::default() }).unwrap();
     let noted: Vec<usize> = (0..plan.len()).filter(|&k| record.passes[k].notes == ["nozzle cleaned"]).collect();
     assert_eq!(noted, [5]);
+    assert_eq!(record.passes.iter().map(|pass| pass.notes.len()).sum::<usize>(), 1);
     for (k, row) in record.passes.iter().enumerate().skip(1) {
         // It cools from 1450 towards 120 °C with 1.5 s, and is read half a second before the arc.
         let wait = cell.done[k].start - cell.done[k - 1].end - 0.5;
