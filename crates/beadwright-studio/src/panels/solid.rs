@@ -171,7 +171,7 @@ pub(super) fn legend(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
     // A field that is left as it was gives back what it shows, which is rounded.
     let rounding = 0.5 * 0.1_f64.powi(decimals as i32);
     // Ends never meet: the colours between them would have no values.
-    let least = 1e-3 * (high - low);
+    let least = 1e-3 * low.abs().max(high.abs()).max(1e-3);
     let end = |ui: &mut Ui, value: &mut f64, text: &str, range: RangeInclusive<f64>| {
         let before = *value;
         let field = DragValue::new(value).range(range).speed(0.01 * (high - low)).fixed_decimals(decimals).suffix(unit);

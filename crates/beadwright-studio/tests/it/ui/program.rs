@@ -35,7 +35,7 @@ fn the_program_follows_the_torch_and_the_torch_the_program() {
     assert!(harness.state_mut().view().torch.is_some());
     // Other files can be read, too, and the torch followed again.
     open_list(&mut harness, "File of the program");
-    click(&mut harness, "cross.dat");
+    click(&mut harness, "CROSS.dat");
     assert!(harness.query_by_label_contains("DEFDAT").is_some());
     open_list(&mut harness, "File of the program");
     click(&mut harness, "the one that the torch is in");
@@ -44,5 +44,5 @@ fn the_program_follows_the_torch_and_the_torch_the_program() {
     open_list(&mut harness, "Dialect");
     click(&mut harness, "rapid");
     wait(&mut harness);
-    assert!(harness.query_by_label_contains("[rapid]").is_some() && !sees(&harness, "cross.src"));
+    assert!(harness.query_by_label_contains("[rapid]").is_some() && !sees(&harness, "CROSS.src"));
 }
