@@ -49,8 +49,7 @@ impl Distorted {
         clamps: Clamps,
         task: &Task,
     ) -> Result<Self, String> {
-        let layers: Vec<Layer> = layers.iter().map(|layer| (**layer).clone()).collect();
-        let built = Welding::of(&layers, profile)
+        let built = Welding::of(layers, profile)
             .and_then(|welding| Setup { clamps, ..Setup::default() }.build(&welding, profile, task))
             .map_err(|error| error.to_string())?;
         task.check().map_err(|error| error.to_string())?;
