@@ -32,12 +32,13 @@ impl Studio {
                 let program = Export::Program(self.view.dialect.clone());
                 self.begin_export(program);
             }
-            // Who undoes a change does not expect the part to be closed.
+            // Undo must not close the part without a question.
             Action::Undo if self.open.project.undoes() == Some(OPENING) => self.open.asks_undo = true,
             Action::Undo => self.step_back(),
             Action::DecideUndo(goes_on) => {
                 self.open.asks_undo = false;
-                if goes_on {
+                // Another part may have been opened, or a step taken, while the question was there.
+                if goes_on && self.open.project.undoes() == Some(OPENING) {
                     self.step_back();
                 }
             }
@@ -245,19 +246,25 @@ impl Studio {
     /// Makes a change, to be kept or taken back.
     fn begin_trial(&mut self, change: Change) {
         let Some(before) = trial::figures(&self.plans.own) else { return };
-        let from = self.known().value_now(change.key);
+        let (from, was) = (self.known().value_now(change.key), self.project().clone());
         self.open.project.seal();
         self.set_value(change.key, &change.value);
         self.open.project.seal();
-        self.open.trial = Some(Trial { change, from, before, tried: self.project().clone() });
+        if *self.project() == was {
+            // The value was refused, or it is the same.
+            self.open.refused.clone().into_iter().for_each(|(_, reason)| self.complain(reason));
+            return;
+        }
+        self.open.trial = Some(Trial { change, from, before, was, tried: self.project().clone() });
     }
 
     /// Keeps the change that is tried, or takes it back.
     fn end_trial(&mut self, keeps: bool) {
-        let takes_back = self.known().trial().is_some() && !keeps;
-        self.open.trial = None;
-        if takes_back {
-            self.step_back();
+        let is_tried = self.known().trial().is_some();
+        if let Some(trial) = self.open.trial.take().filter(|_| is_tried && !keeps) {
+            self.open.project.seal();
+            self.change(trial.change.key, |project| *project = trial.was);
+            self.open.project.seal();
         }
     }
 

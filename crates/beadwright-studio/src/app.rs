@@ -66,7 +66,10 @@ impl Studio {
             None => {}
         }
         match jobs::take(&mut self.jobs.listing_job) {
-            Some(Ok(listing)) => self.jobs.listing = Some(listing),
+            Some(Ok(listing)) => {
+                self.jobs.listing = Some(listing);
+                (self.view.listed, self.view.file) = (None, None);
+            }
             // Do not try again: it would only fail again.
             Some(Err(error)) => self.jobs.listing = Some((self.view.dialect.clone(), Err(error))),
             None => {}

@@ -29,12 +29,9 @@ impl Studio {
         if let Some(distortion) = &mut self.jobs.distortion {
             distortion.hear();
         }
-        if let Some(distorted) = self.known().distorted() {
-            let times = distorted.times;
-            self.view.bend.times.get_or_insert(times);
-        }
+        let times = self.view.bend.times.or(self.known().distorted().map(|distorted| distorted.times));
         let bent = self.known().bent(&self.view).cloned();
-        self.plans.own.scene.bend(bent.as_ref().zip(self.view.bend.times));
+        self.plans.own.scene.bend(bent.as_ref().zip(times));
     }
 }
 

@@ -49,12 +49,13 @@ impl Distorted {
         clamps: Clamps,
         task: &Task,
     ) -> Result<Self, String> {
-        let layers: Vec<Layer> = layers.iter().map(|layer| (**layer).clone()).collect();
-        let built = Welding::of(&layers, profile)
+        let built = Welding::of(layers, profile)
             .and_then(|welding| Setup { clamps, ..Setup::default() }.build(&welding, profile, task))
             .map_err(|error| error.to_string())?;
+        task.check().map_err(|error| error.to_string())?;
+        let straight = Bent::divided(&built, drawn);
         let figure = |shape: &Shape| {
-            let bent = Arc::new(Bent::new(&built, shape, drawn));
+            let bent = Arc::new(Bent::new(&built, shape, &straight));
             Figure { lift: shape.lift, deviation: shape.deviation, bent }
         };
         let (clamped, released) = (figure(&built.clamped), figure(&built.released));

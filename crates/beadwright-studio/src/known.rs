@@ -20,7 +20,7 @@ use crate::text::Language;
 use crate::trial::Trial;
 use crate::view::{Mode, ViewState};
 use crate::view2d::View2d;
-use crate::view3d::{Colour, Pick, Plate, Style, View3d};
+use crate::view3d::{Colour, LayerBeads, Pick, Plate, Style, View3d};
 use beadwright::bead::library::BeadLibrary;
 use beadwright::chart::Chart;
 use beadwright::fill::StrategyName;
@@ -248,10 +248,8 @@ impl<'a> Known<'a> {
     }
 
     /// A bead, given by its layer, its pass and its piece of the pass.
-    pub(crate) fn pick(self, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
-        let beads = self.plans.own.scene.layer(layer)?;
-        let piece = beads.piece(beads.passes().get(pass)?.segments.start) + piece;
-        Some(Pick { layer, pass, segment: beads.segments_of(piece).start })
+    pub(crate) fn pick(self, chosen: (usize, usize, usize)) -> Option<Pick> {
+        pick_in(self.plans.own.scene.layer(chosen.0)?, chosen)
     }
 
     /// The values at the two ends of the colours: those chosen by hand, or else the least and the largest of all plans in view.
@@ -274,7 +272,9 @@ impl<'a> Known<'a> {
         let scan = inner && view.mode == Mode::Solid && !view.laying && !bent;
         let arm = self.arm(view).filter(|_| !bent);
         let at_arm = self.torch_place(view).filter(|_| arm.is_some()).map(|place| place.torch);
-        let pieces = self.plans.own.scene.layer(view.last).map_or(0, |layer| layer.len());
+        let scene = &self.plans.own.scene;
+        let pieces = scene.layer(view.last).map_or(0, |layer| layer.len());
+        let reached = || scene.drawn_segments(view.last, (view.progress * pieces as f64).round() as usize);
         Style {
             colour: if bent { Colour::Movement } else { view.colour },
             range: self.range(view).filter(|_| !bent),
@@ -287,13 +287,20 @@ impl<'a> Known<'a> {
             // Beads would be in front of the faces to be clicked, and in front of the scan.
             beads: view.show.beads && !view.laying && !scan,
             layers: view.first..=view.last,
-            segments_of_last: (view.progress < 1.0).then_some((view.progress * pieces as f64).round() as usize),
+            segments_of_last: (view.progress < 1.0).then(reached),
             section: view.section,
             plate: self.plate().filter(|_| view.plate && !bent),
-            torch: view.torch.or(at_arm),
+            // The torch follows the plan.
+            torch: view.torch.filter(|_| !bent).or(at_arm),
             arm: arm.map(|arm| arm.links).unwrap_or_default(),
-            highlight: view.chosen.and_then(|chosen| self.pick(chosen)),
+            highlight: view.chosen.and_then(|chosen| pick_in(scene.drawn_layer(chosen.0)?, chosen)),
             dark: !self.window.settings.light,
         }
     }
+}
+
+/// A bead of a layer, given by its layer, its pass and its piece of the pass.
+fn pick_in(beads: &LayerBeads, (layer, pass, piece): (usize, usize, usize)) -> Option<Pick> {
+    let piece = beads.piece(beads.passes().get(pass)?.segments.start) + piece;
+    Some(Pick { layer, pass, segment: beads.segments_of(piece).start })
 }

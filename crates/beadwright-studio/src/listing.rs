@@ -71,11 +71,13 @@ impl Listing {
             files.push(File::new(name, text, before));
         }
         let passes = layers.iter().flat_map(|layer| &layer.passes).filter(|pass| pass.points.len() > 1).count();
-        let each: Vec<Vec<Step>> = files.iter().map(|main| steps(&files, main, profile, dialect)).collect();
-        // The main file is the one from which all passes are reached; some languages divide a program into several of them.
-        let mut ways = each.iter().cloned().chain([joined(&each)]);
-        let steps = ways.find(|steps| count(steps) == passes).unwrap_or_default();
+        let steps = whole(&files, passes, |main| steps(&files, main, profile, dialect));
         Ok(Self { dialect: dialect.to_owned(), files, steps })
+    }
+
+    /// Its files.
+    pub fn files(&self) -> &[File] {
+        &self.files
     }
 
     /// The file of a line.
@@ -99,8 +101,11 @@ impl Listing {
     /// next move in its file.
     pub fn seconds(&self, scene: &Scene, line: usize) -> Option<f64> {
         let within = self.file(line)?.lines();
-        let below = self.steps.iter().filter(|step| within.contains(&step.line) && step.line >= line);
-        let Place { pass, laid, part } = below.min_by_key(|step| step.line)?.place;
+        let below = self.steps.iter().enumerate().filter(|(_, step)| within.contains(&step.line) && step.line >= line);
+        let (first, Step { line, .. }) = below.min_by_key(|(_, step)| step.line)?;
+        // An arc has several moves, all of its line.
+        let of_line = self.steps[first..].iter().take_while(|step| step.line == *line);
+        let Place { pass, laid, part } = of_line.last()?.place;
         let all = scene.layers().iter().enumerate().filter_map(|(i, layer)| Some((i, layer.as_deref()?)));
         let mut of_program = all.flat_map(|(i, layer)| passes(layer).map(move |pass| (i, layer, pass)));
         let (index, layer, pass) = of_program.nth(pass)?;
@@ -163,6 +168,21 @@ fn steps(files: &[File], main: &File, profile: &Profile, dialect: &str) -> Vec<S
         pass += usize::from(laid);
     }
     steps
+}
+
+/// The moves of a program with this many passes, none if they are not found. Its main file is the one from which all passes are
+/// reached; some languages divide a program into several of them.
+fn whole(files: &[File], passes: usize, read: impl Fn(&File) -> Vec<Step>) -> Vec<Step> {
+    let mut each = Vec::with_capacity(files.len());
+    for main in files {
+        let steps = read(main);
+        if count(&steps) == passes {
+            return steps;
+        }
+        each.push(steps);
+    }
+    let all = joined(&each);
+    if count(&all) == passes { all } else { Vec::new() }
 }
 
 /// The moves of programs that follow each other.

@@ -25,7 +25,7 @@ pub fn change(finding: &Finding, profile: &Profile) -> Option<Change> {
         "towers" => ("travel.clearance", number((finding.size?.max(clearance) + CLEAR).ceil())),
         "low-travel" => ("travel.clearance", number(2.0 * clearance)),
         "void" if profile.fill.strategy != StrategyName::Hybrid => ("fill.strategy", "\"hybrid\"".to_owned()),
-        "short-arc" => ("fill.min_pass_length", number(longest_start(profile).ceil())),
+        "short-arc" => ("fill.min_pass_length", number((1.5 * shortest_pass(profile)).ceil())),
         "cooling" => ("start_stop.min_layer_time", number(profile.check.cooling_time)),
         "stacked-starts" if profile.order.seam != Seam::Spread => ("order.seam", "\"spread\"".to_owned()),
         "built-height" if !profile.layers.level => ("layers.level", "true".to_owned()),
@@ -44,7 +44,8 @@ fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// How far the torch goes while the arc starts, mm.
-fn longest_start(profile: &Profile) -> f64 {
-    profile.process.arc_start_delay * profile.process.deposition_speed
+/// The length that passes have already where the strategy has the choice, mm: at least the way of the torch while the arc starts.
+fn shortest_pass(profile: &Profile) -> f64 {
+    let start = profile.process.arc_start_delay * profile.process.deposition_speed;
+    profile.fill.min_pass_length.max(start)
 }

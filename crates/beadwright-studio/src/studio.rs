@@ -175,6 +175,7 @@ impl Studio {
         self.open.opened = self.open.project.steps();
         self.open.saved = self.open.project.now().clone();
         self.open.refused = None;
+        self.open.asks_undo = false;
         self.close_scan();
         self.follow_profile();
         self.flat.clear_measure();

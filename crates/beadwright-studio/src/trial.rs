@@ -11,6 +11,8 @@ pub(crate) struct Trial {
     pub(crate) from: Option<String>,
     /// The plan before.
     pub(crate) before: Rows,
+    /// The project before.
+    pub(crate) was: Project,
     /// The project with the change.
     pub(crate) tried: Project,
 }

@@ -118,6 +118,8 @@ pub struct ViewState {
     pub chosen: Option<(usize, usize, usize)>,
     /// The line of the program that was last brought into view.
     pub listed: Option<usize>,
+    /// The file of the program that is shown, counted from 0; the one that the torch is in while none is chosen.
+    pub file: Option<usize>,
     /// The dialect to write.
     pub dialect: String,
     /// The folder to write into; if empty, the user is asked for one.
@@ -169,6 +171,7 @@ impl Default for ViewState {
             pin: None,
             chosen: None,
             listed: None,
+            file: None,
             dialect: "krl".to_owned(),
             folder: String::new(),
             cell: beadwright::robot::cell::BUILT_IN[0].0.to_owned(),

@@ -13,7 +13,9 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
         if slider(ui, known.t("clock"), 2, time) {
             view.state.go_to(now, scene);
         }
-        ui.label(format!("/ {}, {} {}", clock(total), known.t("clock-left"), clock(total - now)));
+        // What is done and what is left add up as they are shown.
+        let left = total.round() - now.round();
+        ui.label(format!("/ {}, {} {}", clock(total), known.t("clock-left"), clock(left)));
         if let Some(summary) = &known.plans.own.summary {
             ui.separator();
             shares(known, ui, &Shares::of(scene, &summary.metrics));

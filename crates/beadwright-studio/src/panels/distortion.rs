@@ -16,6 +16,9 @@ const CLAMPS: [(Clamps, &str); 3] =
 /// The movement is drawn at most this many times as large as it is.
 const MOST_TIMES: f64 = 500.0;
 
+/// Parts with fewer segments follow the slider while it is dragged.
+const FOLLOWS_BELOW: usize = 200_000;
+
 /// The switch that shows the bent shape, which is computed in the background.
 pub(super) fn switch(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     let [bent, hint, waits] = ["show-bent", "show-bent-hint", "show-bent-waits"].map(|key| known.t(key));
@@ -74,13 +77,20 @@ fn progress(known: Known<'_>, distortion: &Distorting, queue: &mut Queue, ui: &m
 /// Which shape is shown, and how large its movement is drawn.
 fn shape(known: Known<'_>, view: &mut View<'_>, distorted: &Distorted, ui: &mut Ui) {
     let bend = &mut view.state.bend;
-    ui.selectable_value(&mut bend.clamped, true, known.t("bent-clamped"));
-    ui.selectable_value(&mut bend.clamped, false, known.t("bent-released"));
+    // Without clamps nothing is released.
+    if bend.clamps != Clamps::None {
+        ui.selectable_value(&mut bend.clamped, true, known.t("bent-clamped"));
+        ui.selectable_value(&mut bend.clamped, false, known.t("bent-released"));
+    }
     let label = ui.label(known.t("bent-times")).on_hover_text(known.t("bent-times-hint"));
     let mut times = bend.times.unwrap_or(distorted.times);
     let slider = Slider::new(&mut times, 0.0..=MOST_TIMES).logarithmic(true).smallest_positive(1.0).step_by(1.0);
-    ui.add(slider.suffix(" ×")).labelled_by(label.id);
-    bend.times = Some(times);
+    let slider = ui.add(slider.suffix(" ×")).labelled_by(label.id);
+    // A large part is bent once the slider rests: it would lag behind.
+    let follows = !slider.dragged() || known.plans.own.scene.segments() < FOLLOWS_BELOW;
+    if slider.changed() && follows {
+        bend.times = Some(times);
+    }
 }
 
 /// What the colours mean.

@@ -237,7 +237,7 @@ fn number(ui: &mut Ui, whole: bool, value: Option<&toml::Value>, limit: Option<&
 
 /// The unit shown after a number; empty if the key already names it. A bracket in it says what the range depends on and
 /// belongs in the hint.
-fn unit(limit: &Limit) -> &'static str {
+pub(super) fn unit(limit: &Limit) -> &'static str {
     let unit = limit.unit.split('(').next().unwrap_or_default().trim();
     if limit.key.split(['.', '_']).any(|word| word == unit) { "" } else { unit }
 }

@@ -22,7 +22,8 @@ pub(super) fn switch(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, u
 
 /// The cell, and the joints of its arm in its present pose.
 pub(super) fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
-    if !view.state.robot {
+    // A bent shape is shown without the arm.
+    if !view.state.robot || known.bent(view.state).is_some() {
         return;
     }
     ui.horizontal_wrapped(|ui| {

@@ -162,19 +162,30 @@ pub(super) fn legend(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
         Colour::HeightError => known.t("unit-bead-heights"),
         _ => "",
     };
+    if high <= low {
+        ui.label(format!("{low:.1}{unit}"));
+        return;
+    }
     let (colour, mut ends) = (view.state.colour, [low, high]);
+    let decimals = (2.0 - (high - low).log10().floor()).clamp(1.0, 4.0) as usize;
+    // A field that is left as it was gives back what it shows, which is rounded.
+    let rounding = 0.5 * 0.1_f64.powi(decimals as i32);
     // Ends never meet: the colours between them would have no values.
-    let least = 1e-3 * (high - low).abs().max(1e-3);
+    let least = 1e-3 * low.abs().max(high.abs()).max(1e-3);
     let end = |ui: &mut Ui, value: &mut f64, text: &str, range: RangeInclusive<f64>| {
-        let field = DragValue::new(value).range(range).speed(0.01 * (high - low)).fixed_decimals(1).suffix(unit);
+        let before = *value;
+        let field = DragValue::new(value).range(range).speed(0.01 * (high - low)).fixed_decimals(decimals).suffix(unit);
+        let field = field.clamp_existing_to_range(false).update_while_editing(false);
         let response = ui.add(field).on_hover_text(text);
         response.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, text));
-        response.changed()
+        if (*value - before).abs() <= rounding {
+            *value = before;
+        }
     };
-    let lowest = end(ui, &mut ends[0], known.t("range-low"), f64::NEG_INFINITY..=high - least);
+    end(ui, &mut ends[0], known.t("range-low"), f64::NEG_INFINITY..=high - least);
     scale(ui, |part| palette::at(colour, part, dark));
-    let highest = end(ui, &mut ends[1], known.t("range-high"), low + least..=f64::INFINITY);
-    if lowest || highest {
+    end(ui, &mut ends[1], known.t("range-high"), low + least..=f64::INFINITY);
+    if ends != [low, high] {
         view.state.range = Some((colour, ends));
     }
     let chosen = view.state.range.is_some_and(|(of, _)| of == colour);
@@ -213,7 +224,7 @@ fn caption(known: Known<'_>, view: &View<'_>) -> String {
 
 /// The picked bead: the piece of its pass that the segment belongs to.
 fn chosen(known: Known<'_>, pick: Pick) -> Option<(usize, usize, usize)> {
-    let beads = known.plans.own.scene.layer(pick.layer)?;
+    let beads = known.plans.own.scene.drawn_layer(pick.layer)?;
     let first = beads.piece(beads.passes().get(pick.pass)?.segments.start);
     Some((pick.layer, pick.pass, beads.piece(pick.segment) - first))
 }

@@ -18,7 +18,10 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
         for (name, value) in &rows {
             named(known, ui, name);
             match keeps_limits(&known.plans.own, name) {
-                Some(true) => ui.colored_label(theme::good(ui.visuals().dark_mode), format!("✔ {value}")),
+                Some(true) => {
+                    let good = theme::good(ui.visuals().dark_mode);
+                    ui.colored_label(good, format!("✔ {value}")).on_hover_text(known.t(limits_of(name)))
+                }
                 Some(false) => ui.colored_label(ui.visuals().error_fg_color, format!("✖ {value}")),
                 None => ui.label(value),
             };
@@ -29,16 +32,20 @@ pub(super) fn show(known: Known<'_>, view: &View<'_>, ui: &mut Ui) {
     chosen(known, view, ui);
 }
 
-/// Whether what a row says keeps the limits of the checks, where they have any.
+/// Whether every layer keeps the limits of what a row says, where there are any and the checks are done.
 fn keeps_limits(plan: &PlanState, name: &str) -> Option<bool> {
-    let (figures, limits) = (plan.total.as_ref()?, &plan.profile.as_ref()?.check);
-    match name {
-        "void / low area" => Some(figures.void_percent() <= limits.max_void),
-        "overfill / outside" => {
-            Some(figures.overfill_percent() <= limits.max_overfill && figures.outside_percent() <= limits.max_outside)
-        }
-        _ => None,
-    }
+    let kinds: &[&str] = match name {
+        "void / low area" => &["void"],
+        "overfill / outside" => &["overfill", "outside"],
+        _ => return None,
+    };
+    let findings = plan.findings.as_ref()?;
+    Some(!findings.iter().any(|finding| kinds.contains(&finding.kind)))
+}
+
+/// The text on the limits that a row keeps.
+fn limits_of(name: &str) -> &'static str {
+    if name == "void / low area" { "keeps-void" } else { "keeps-overfill" }
 }
 
 /// A row's name, with its meaning as a hint.

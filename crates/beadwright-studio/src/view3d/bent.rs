@@ -25,7 +25,7 @@ pub struct Bent {
 /// A layer in segments short enough to bend.
 #[derive(Debug)]
 struct Moving {
-    straight: LayerBeads,
+    straight: Arc<LayerBeads>,
     /// How far both ends of each segment move, mm.
     by: Vec<[Vec3; 2]>,
     /// How far the middle of each segment moves, mm.
@@ -33,11 +33,17 @@ struct Moving {
 }
 
 impl Bent {
-    /// A shape of a build, for layers as they are drawn.
-    pub fn new(built: &Distortion, shape: &Shape, drawn: &[Option<Arc<LayerBeads>>]) -> Self {
+    /// The layers of a build in segments short enough to bend.
+    pub fn divided(built: &Distortion, drawn: &[Option<Arc<LayerBeads>>]) -> Vec<Option<Arc<LayerBeads>>> {
+        let divided = |layer: &Arc<LayerBeads>| Arc::new(layer.divided(built.grid.size.x as f32));
+        drawn.iter().map(|layer| layer.as_ref().map(divided)).collect()
+    }
+
+    /// A shape of a build, for its divided layers.
+    pub fn new(built: &Distortion, shape: &Shape, divided: &[Option<Arc<LayerBeads>>]) -> Self {
         let most = shape.moved.iter().map(|moved| moved.length()).fold(0.0, f64::max);
         let moving = |layer: &Arc<LayerBeads>| Moving::new(layer, built, shape);
-        let layers = drawn.iter().map(|layer| layer.as_ref().map(moving)).collect();
+        let layers = divided.iter().map(|layer| layer.as_ref().map(moving)).collect();
         let (nodes, triangles) = of_plate(built, shape);
         Self { layers, nodes, triangles, most }
     }
@@ -67,8 +73,7 @@ impl Bent {
 }
 
 impl Moving {
-    fn new(layer: &LayerBeads, built: &Distortion, shape: &Shape) -> Self {
-        let straight = layer.divided(built.grid.size.x as f32);
+    fn new(straight: &Arc<LayerBeads>, built: &Distortion, shape: &Shape) -> Self {
         let mut last = DVec3::ZERO;
         // A bead's place is the line in its middle. Beside all voxels it moves as the metal before it.
         let mut moved = |at: Vec3| {
@@ -77,7 +82,7 @@ impl Moving {
         };
         let by: Vec<[Vec3; 2]> = straight.beads().iter().map(|bead| bead.middle_line().map(&mut moved)).collect();
         let far = by.iter().map(|[from, to]| (*from + *to).length() / 2.0).collect();
-        Self { straight, by, far }
+        Self { straight: straight.clone(), by, far }
     }
 }
 

@@ -37,7 +37,7 @@ pub fn pick(scene: &Scene, style: &Style, camera: &Camera, size: DVec2, at: DVec
     let kept = style.section.map_or(Some((0.0, f64::INFINITY)), |section| section.kept(origin, way))?;
     let ray = Ray { origin: origin.as_vec3(), way: way.as_vec3(), kept: (kept.0 as f32, kept.1 as f32) };
     let mut layers: Vec<(f32, usize, &LayerBeads, usize)> = scene
-        .present()
+        .drawn_present()
         .map(|(index, layer)| (index, layer, style.shown(index, layer.len())))
         .filter(|(_, _, shown)| *shown > 0)
         .filter_map(|(index, layer, shown)| Some((ray.enters(layer.bounds()?)?, index, &**layer, shown)))
@@ -54,7 +54,7 @@ pub fn pick(scene: &Scene, style: &Style, camera: &Camera, size: DVec2, at: DVec
             best = Some((distance, index, segment));
         }
     }
-    best.and_then(|(_, layer, segment)| Some(Pick { layer, pass: scene.layer(layer)?.pass_of(segment), segment }))
+    best.and_then(|(_, layer, segment)| Some(Pick { layer, pass: scene.drawn_layer(layer)?.pass_of(segment), segment }))
 }
 
 /// The nearest of the first `shown` segments of a layer, and its distance, mm.

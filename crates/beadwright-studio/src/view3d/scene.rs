@@ -175,14 +175,30 @@ impl Scene {
         self.bend.as_ref().map_or(&self.layers, |bend| &bend.layers)
     }
 
-    /// The layer with this index, as it is drawn.
+    /// The layer with this index, as planned.
     pub fn layer(&self, index: usize) -> Option<&Arc<LayerBeads>> {
+        self.layers.get(index)?.as_ref()
+    }
+
+    /// The layer with this index, as it is drawn: bent, and then in more segments.
+    pub fn drawn_layer(&self, index: usize) -> Option<&Arc<LayerBeads>> {
         self.drawn().get(index)?.as_ref()
     }
 
-    /// The layers that have come, with their indices.
-    pub(super) fn present(&self) -> impl DoubleEndedIterator<Item = (usize, &Arc<LayerBeads>)> {
-        self.drawn().iter().enumerate().filter_map(|(i, layer)| Some((i, layer.as_ref()?)))
+    /// How many segments of a layer are drawn where so many of the plan's are shown.
+    pub fn drawn_segments(&self, index: usize, planned: usize) -> usize {
+        let both = self.layer(index).zip(self.drawn_layer(index)).filter(|_| self.bend.is_some());
+        both.map_or(planned, |(layer, drawn)| drawn.segments_of(layer.piece(planned)).start)
+    }
+
+    /// The layers that have come, with their indices, as planned.
+    fn present(&self) -> impl DoubleEndedIterator<Item = (usize, &Arc<LayerBeads>)> {
+        present(&self.layers)
+    }
+
+    /// The same as they are drawn.
+    pub(super) fn drawn_present(&self) -> impl DoubleEndedIterator<Item = (usize, &Arc<LayerBeads>)> {
+        present(self.drawn())
     }
 
     pub(super) fn values(&self, index: usize) -> Option<&Values> {
@@ -217,7 +233,7 @@ impl Scene {
     /// Lowest and highest corner of model and beads, mm.
     pub fn bounds(&self) -> Option<(DVec3, DVec3)> {
         let mesh = self.mesh.as_ref().filter(|mesh| !mesh.vertices.is_empty()).map(|mesh| mesh.bounds());
-        let beads = self.present().filter_map(|(_, layer)| layer.bounds());
+        let beads = self.drawn_present().filter_map(|(_, layer)| layer.bounds());
         let beads = beads.map(|(low, high)| (low.as_dvec3(), high.as_dvec3()));
         mesh.into_iter().chain(beads).reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
     }
@@ -232,7 +248,7 @@ impl Scene {
             }
         };
         self.mesh.iter().flat_map(|mesh| &mesh.vertices).for_each(|&vertex| add(vertex, 0.0));
-        for bead in self.present().flat_map(|(_, layer)| layer.beads()) {
+        for bead in self.drawn_present().flat_map(|(_, layer)| layer.beads()) {
             let radius = f64::from(bead.width().max(bead.height())) / 2.0;
             bead.middle_line().into_iter().for_each(|end| add(end.as_dvec3(), radius));
         }
@@ -252,18 +268,23 @@ impl Scene {
 
     /// The highest layer that a style shows.
     pub(super) fn top(&self, style: &Style) -> Option<usize> {
-        self.present().map(|(i, _)| i).rfind(|i| style.layers.contains(i))
+        self.drawn_present().map(|(i, _)| i).rfind(|i| style.layers.contains(i))
     }
 
     /// Number of layers that a style shows, and of their rough segments.
     pub(super) fn rough(&self, style: &Style) -> (usize, usize) {
-        let shown = self.present().filter(|(i, _)| style.layers.contains(i));
+        let shown = self.drawn_present().filter(|(i, _)| style.layers.contains(i));
         shown.fold((0, 0), |(layers, rough), (_, layer)| (layers + 1, rough + layer.rough.len()))
     }
 
     /// Memory that the layers take, bytes.
     pub fn bytes(&self) -> usize {
-        self.present().map(|(_, layer)| layer.bytes()).sum()
+        self.drawn_present().map(|(_, layer)| layer.bytes()).sum()
+    }
+
+    /// Number of segments that are drawn.
+    pub(super) fn segments_drawn(&self) -> usize {
+        self.drawn_present().map(|(_, layer)| layer.len()).sum()
     }
 
     /// Number of segments.
@@ -329,6 +350,11 @@ impl Scene {
             }
         }
     }
+}
+
+/// The layers that have come, with their indices.
+fn present(layers: &[Option<Arc<LayerBeads>>]) -> impl DoubleEndedIterator<Item = (usize, &Arc<LayerBeads>)> {
+    layers.iter().enumerate().filter_map(|(i, layer)| Some((i, layer.as_ref()?)))
 }
 
 fn position(index: usize, layer: &LayerBeads, seconds: f64) -> Option<Position> {

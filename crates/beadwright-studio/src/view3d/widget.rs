@@ -183,7 +183,7 @@ impl View3d {
             shown.picked = pos.and_then(|pos| pick(scene, style, &self.camera, size, at(pos)));
             shown.sight = pos.map(|pos| self.camera.ray(at(pos), size));
         }
-        if let Some(pos) = shown.response.hover_pos().filter(|_| !moving && scene.segments() < HOVER_BELOW) {
+        if let Some(pos) = shown.response.hover_pos().filter(|_| !moving && scene.segments_drawn() < HOVER_BELOW) {
             let camera = self.camera;
             shown.hovered = self.hover(key, pos, || pick(scene, style, &camera, size, at(pos)));
         }
@@ -230,14 +230,14 @@ impl View3d {
     ) -> (egui::TextureId, Key, bool) {
         let camera = self.camera;
         let gpu = self.gpu.get_or_insert_with(|| Gpu::new(state));
-        let coarse = moving && scene.segments() > COARSE_FROM[usize::from(gpu.software)];
+        let coarse = moving && scene.segments_drawn() > COARSE_FROM[usize::from(gpu.software)];
         // From far away, rough beads look the same as exact ones.
         let pixel = camera.height() / f64::from(pixels[1]);
-        let exact = scene.segments() < SMOOTH_BELOW || rough_error(scene) > 0.4 * pixel;
+        let exact = scene.segments_drawn() < SMOOTH_BELOW || rough_error(scene) > 0.4 * pixel;
         let quality = if coarse {
             coarse_quality(gpu.software, scene.rough(style))
         } else {
-            fine_quality(gpu.software, moving, scene.segments(), exact)
+            fine_quality(gpu.software, moving, scene.segments_drawn(), exact)
         };
         // A software renderer draws a quarter of the pixels while the view moves.
         let pixels = if coarse && gpu.software { pixels.map(|n| n.div_ceil(2)) } else { pixels };

@@ -45,7 +45,7 @@ impl Planned {
 
     /// All segments as they are drawn.
     fn beads(&self) -> Vec<Bead> {
-        let layers = (0..self.layers.len()).filter_map(|layer| self.scene.layer(layer));
+        let layers = (0..self.layers.len()).filter_map(|layer| self.scene.drawn_layer(layer));
         layers.flat_map(|layer| layer.beads().to_vec()).collect()
     }
 }
@@ -73,7 +73,7 @@ fn beads_are_drawn_moved_as_computed_and_as_planned_at_zero() {
     let bent = &distorted.released.bent;
     planned.scene.bend(Some((bent, 0.0)));
     for (i, straight) in plan.iter().enumerate() {
-        let drawn = planned.scene.layer(i).unwrap();
+        let drawn = planned.scene.drawn_layer(i).unwrap();
         assert_eq!(drawn.seconds(), straight.seconds());
         for (piece, bead) in straight.beads().iter().enumerate() {
             let parts = &drawn.beads()[drawn.segments_of(piece)];
@@ -96,7 +96,7 @@ fn beads_are_drawn_moved_as_computed_and_as_planned_at_zero() {
         }
     }
     planned.scene.bend(None);
-    let same = |(i, layer): (usize, &Arc<LayerBeads>)| Arc::ptr_eq(planned.scene.layer(i).unwrap(), layer);
+    let same = |(i, layer): (usize, &Arc<LayerBeads>)| Arc::ptr_eq(planned.scene.drawn_layer(i).unwrap(), layer);
     assert!(plan.iter().enumerate().all(same), "the plan does not come back");
 }
 

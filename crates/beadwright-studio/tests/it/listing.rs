@@ -1,7 +1,7 @@
 //! Lines of a program and places of the torch belong together, in every dialect.
 
 use beadwright::plan::Header;
-use beadwright::profile::Profile;
+use beadwright::profile::{Profile, edit};
 use beadwright::task::Task;
 use beadwright::weld::Torch;
 use beadwright_studio::listing::Listing;
@@ -10,16 +10,19 @@ use std::sync::Arc;
 
 /// The cross by a profile: its scene, and its program in a dialect.
 fn listed(profile: &str, dialect: &str) -> (Scene, Listing) {
-    let profile = Profile::built_in(profile).unwrap();
-    let mesh = beadwright::example::find("cross").unwrap().mesh();
-    let plan = beadwright::plan::plan("cross", &mesh, &profile, &Task::new()).unwrap();
+    of("cross", &Profile::built_in(profile).unwrap(), dialect)
+}
+
+fn of(part: &str, profile: &Profile, dialect: &str) -> (Scene, Listing) {
+    let mesh = beadwright::example::find(part).unwrap().mesh();
+    let plan = beadwright::plan::plan(part, &mesh, profile, &Task::new()).unwrap();
     let (mut scene, mut torch) = (Scene::default(), Torch::of(&profile.weld_settings()));
     for layer in &plan.layers {
         scene.set_layer(layer.index, Arc::new(LayerBeads::of(layer, &mut torch)));
     }
     let header: Header = plan.header;
     let layers: Vec<_> = plan.layers.into_iter().map(Arc::new).collect();
-    let listing = Listing::of(&header, &profile, &layers, dialect).unwrap();
+    let listing = Listing::of(&header, profile, &layers, dialect).unwrap();
     (scene, listing)
 }
 
@@ -57,4 +60,24 @@ fn the_line_of_a_place_names_it_and_leads_back_to_it() {
             }
         }
     }
+}
+
+#[test]
+fn the_line_of_an_arc_leads_to_its_end() {
+    let text = Profile::built_in_text("cmt-al2319-kuka").unwrap().to_owned();
+    let with = [("program.chord_tolerance", "0.05"), ("program.arcs", "true")];
+    let text = with.iter().fold(text, |text, (key, value)| edit::with_value(&text, key, value).unwrap());
+    let (scene, listing) = of("pot", &Profile::parse(&text).unwrap(), "krl");
+    let (mut arcs, mut line) = (0, 0);
+    while let Some(file) = listing.file(line).filter(|file| file.lines().contains(&line)) {
+        let text = file.line(line).trim();
+        if let Some((_, end)) = text.split_once("CIRC {").and_then(|(_, arc)| arc.split_once("},")) {
+            let seconds = listing.seconds(&scene, line).unwrap();
+            let (torch, end) = (scene.at_time(seconds).unwrap().torch.at, numbers(end));
+            assert!((torch.x - end[0]).abs() < 0.5 && (torch.y - end[1]).abs() < 0.5, "{text} is not at {torch}");
+            arcs += 1;
+        }
+        line += 1;
+    }
+    assert!(arcs > 10, "{arcs} arcs");
 }

@@ -14,6 +14,7 @@ use crate::process::Process;
 use crate::profile::Profile;
 use crate::task::Task;
 use distort::{Bead, DVec3, DistortError, Eccentricity, Plate, Settings};
+use std::borrow::Borrow;
 
 /// Voxels are made larger if the lattice around plate and part would have more than this.
 const WANTED_VOXELS: f64 = 400_000.0;
@@ -61,13 +62,13 @@ impl Welding {
     ///
     /// # Errors
     /// The profile lacks thermal values, layers are not level, or there are no passes.
-    pub fn of(layers: &[Layer], profile: &Profile) -> Result<Self, DistortionError> {
+    pub fn of<L: Borrow<Layer>>(layers: &[L], profile: &Profile) -> Result<Self, DistortionError> {
         let (heat, weld) = (profile.heat_settings()?, profile.weld_settings());
         if !weld.is_level() || weld.charts.len() > 1 {
             return Err(DistortionError::NotLevel);
         }
         let (mut beads, mut now) = (Vec::new(), 0.0);
-        for layer in layers {
+        for layer in layers.iter().map(Borrow::borrow) {
             let process = weld.process.at_layer(layer.index);
             for pass in &layer.passes {
                 now += pass.wait;
@@ -80,7 +81,7 @@ impl Welding {
         let (Some(low), Some(high)) = (points().reduce(DVec3::min), points().reduce(DVec3::max)) else {
             return Err(DistortionError::NoPasses);
         };
-        let floor = layers.first().map_or(0.0, |layer| layer.z - layer.height);
+        let floor = layers.first().map(Borrow::borrow).map_or(0.0, |layer| layer.z - layer.height);
         let around = heat.substrate.margin + 0.5 * heat.bead_width;
         let plate = Plate {
             low: (low - around).with_z(floor - heat.substrate.thickness),

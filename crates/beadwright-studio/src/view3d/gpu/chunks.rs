@@ -92,7 +92,7 @@ pub(super) type Card<'a> = (&'a wgpu::Device, &'a wgpu::Queue);
 /// Updates the chunks to match the scene.
 pub(super) fn sync(chunks: &mut Vec<Chunk>, card: Card<'_>, scene: &Scene, colour: Colour) {
     let wanted: Vec<(usize, &LayerBeads)> =
-        scene.present().map(|(i, l)| (i, &**l)).filter(|(_, l)| l.len() <= LARGEST_LAYER).collect();
+        scene.drawn_present().map(|(i, l)| (i, &**l)).filter(|(_, l)| l.len() <= LARGEST_LAYER).collect();
     let slots = chunks.iter().flat_map(|chunk| &chunk.slots);
     let same = slots.zip(&wanted).take_while(|(slot, (i, layer))| slot.layer == *i && slot.id == layer.id).count();
     truncate(chunks, same);
@@ -184,7 +184,7 @@ impl Chunk {
         }
         let end_of = |slots: usize| slots.checked_sub(1).map(|i| self.slots[i].ends).unwrap_or_default();
         let (begin, mut end, top) = (end_of(first), end_of(last), &self.slots[last - 1]);
-        if let (Some(limit), Some(layer)) = (style.segments_of_last, scene.layer(top.layer))
+        if let (Some(limit), Some(layer)) = (style.segments_of_last, scene.drawn_layer(top.layer))
             && top.layer == *style.layers.end()
         {
             end = partly(end_of(last - 1), layer, limit);

@@ -81,7 +81,7 @@ impl Shot<'_> {
     fn draw_highlight(&self, pass: &mut wgpu::RenderPass<'_>) {
         let Self { gpu, pipelines, scene, style, quality, .. } = *self;
         let Some(Pick { layer, pass: number, segment }) = style.highlight else { return };
-        let Some(beads) = scene.layer(layer) else { return };
+        let Some(beads) = scene.drawn_layer(layer) else { return };
         let Some(span) = beads.passes().get(number) else { return };
         let shown = style.shown(layer, beads.len());
         for (look, segments) in [(1, span.segments.clone()), (2, beads.segments_of(beads.piece(segment)))] {

@@ -28,7 +28,7 @@ pub(super) fn send_values(chunks: &mut [Chunk], card: Card<'_>, scene: &Scene, c
         for slot in &mut chunk.slots {
             let (here, ends) = (begin, slot.ends);
             begin = ends;
-            let Some(layer) = scene.layer(slot.layer) else { continue };
+            let Some(layer) = scene.drawn_layer(slot.layer) else { continue };
             let supplied = match colour {
                 Colour::HeightError => scene.values(slot.layer),
                 Colour::Temperature => scene.temperatures(slot.layer),

@@ -40,6 +40,8 @@ fn the_bent_shape_is_shown_with_the_figures_of_the_command() {
     open_list(&mut harness, "Clamps");
     click(&mut harness, "none");
     wait(&mut harness);
+    assert_eq!(harness.state_mut().view().bend.times, None, "nobody has chosen the exaggeration");
+    assert!(!sees(&harness, "released"), "nothing is released");
     let free = built(&harness, Clamps::None);
     assert!(sees(&harness, &lift(&free)) && lift(&free) != lift(&corners), "{}", lift(&free));
     // Another plan has another shape.
@@ -55,22 +57,36 @@ fn the_bent_shape_is_shown_with_the_figures_of_the_command() {
 fn the_slider_exaggerates_what_is_seen() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = example(folder.path(), "cross");
-    let place = |harness: &Window| harness.state().plan().scene.layer(0).unwrap().beads()[0].from().as_dvec3();
+    let place = |harness: &Window| harness.state().plan().scene.drawn_layer(0).unwrap().beads()[0].from().as_dvec3();
     let planned = place(&harness);
+    let torch = |harness: &Window| {
+        let scene = &harness.state().plan().scene;
+        scene.at_time(0.4 * scene.total_seconds())
+    };
+    let at = torch(&harness);
     click(&mut harness, "Bent shape");
     wait(&mut harness);
-    let slider = harness.get_by_role_and_label(Role::Slider, "Exaggerated");
+    let slider = harness.get_by_role_and_label(Role::Slider, "Exaggeration");
     assert!(slider.accesskit_node().numeric_value().unwrap() >= 1.0);
     let moved = [0.0, 1.0, 100.0].map(|times| {
-        slide(&mut harness, "Exaggerated", times);
+        slide(&mut harness, "Exaggeration", times);
         harness.run_steps(2);
         place(&harness) - planned
     });
     let [zero, one, hundred] = moved;
     assert!(zero.length() == 0.0 && one.length() > 0.0 && one.length() < 5.0, "{moved:?}");
     assert!(hundred.abs_diff_eq(100.0 * one, 0.01), "{moved:?}");
+    // Program and arm follow the plan, not what is exaggerated.
+    assert_eq!(torch(&harness), at);
+    let layer = |i| harness.state().plan().scene.layer(i).unwrap().len();
+    let drawn = |i| harness.state().plan().scene.drawn_layer(i).unwrap().len();
+    for shown in [0, 1, layer(2) / 2, layer(2)] {
+        let segments = harness.state().plan().scene.drawn_segments(2, shown);
+        assert!(segments >= shown && segments <= drawn(2), "{segments} for {shown}");
+        assert_eq!(segments == drawn(2), shown == layer(2));
+    }
     if has_adapter() {
-        slide(&mut harness, "Exaggerated", 20.0);
+        slide(&mut harness, "Exaggeration", 20.0);
         harness.key_press(eframe::egui::Key::F);
         harness.run_steps(4);
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("bent.png");
@@ -85,12 +101,17 @@ fn the_slider_exaggerates_what_is_seen() {
 #[test]
 fn computing_can_be_given_up() {
     let folder = tempfile::tempdir().unwrap();
-    let mut harness = example(folder.path(), "propeller");
-    harness.get_by_label("Bent shape").click();
-    harness.run_steps(2);
-    assert!(!harness.state().is_idle(), "it is done already: take a larger part");
-    click(&mut harness, "Cancel");
-    assert!(harness.state().is_idle() && !harness.state_mut().view().bend.shown && !sees(&harness, "Clamps"));
+    let mut harness = example(folder.path(), "cross");
+    for giving_up in [Action::StopDistortion, Action::Stop] {
+        // No frame takes the result in between.
+        harness.state_mut().view().bend.shown = true;
+        harness.state_mut().act(Action::Distort);
+        assert!(!harness.state().is_idle());
+        harness.state_mut().act(giving_up);
+        assert!(harness.state().is_idle() && !harness.state_mut().view().bend.shown);
+        harness.run_steps(2);
+        assert!(!sees(&harness, "Clamps"));
+    }
 }
 
 #[test]

@@ -79,18 +79,18 @@ fn the_clock_takes_the_torch_to_any_time_of_the_program() {
     let total = harness.state().plan().scene.total_seconds();
     assert!(harness.query_by_label_contains("left: 0:00:00").is_some(), "all of it is shown");
     for part in [0.0, 0.31, 0.77, 1.0] {
-        slide(&mut harness, "Clock", part * total);
+        slide(&mut harness, "Program time", part * total);
         let view = harness.state_mut().view().clone();
         let wanted = harness.state().plan().scene.at_time(view.seconds).unwrap();
         assert!((view.seconds - part * total).abs() < 1e-3 * total && !view.playing);
         assert_eq!(view.last, wanted.layer);
         assert!(view.torch.unwrap().at.distance(wanted.torch.at) < 1e-6);
-        let left = (total - view.seconds).round() as u64;
+        let left = (total.round() - view.seconds.round()) as u64;
         let left = format!("left: 0:{:02}:{:02}", left / 60, left % 60);
         assert!(harness.query_by_label_contains(&left).is_some(), "{left} is not shown");
     }
     // Play goes on from there.
-    slide(&mut harness, "Clock", 0.5 * total);
+    slide(&mut harness, "Program time", 0.5 * total);
     press(&mut harness, Key::Space);
     assert!(harness.state_mut().view().seconds > 0.5 * total);
     // The clock follows what is shown.

@@ -17,7 +17,7 @@ fn the_program_follows_the_torch_and_the_torch_the_program() {
     click(&mut harness, "Program");
     wait(&mut harness);
     let total = harness.state().plan().scene.total_seconds();
-    slide(&mut harness, "Clock", 0.35 * total);
+    slide(&mut harness, "Program time", 0.35 * total);
     harness.run_steps(3);
     // Layer 4 of 10 lies at 8 mm.
     assert!(harness.query_all_by_label_contains("Z 8.000").count() > 3, "the lines of the torch are not in view");
@@ -33,9 +33,16 @@ fn the_program_follows_the_torch_and_the_torch_the_program() {
     let after = now(&mut harness);
     assert!(after > before && after < before + 300.0, "{before} s, then {after} s");
     assert!(harness.state_mut().view().torch.is_some());
+    // Other files can be read, too, and the torch followed again.
+    open_list(&mut harness, "File of the program");
+    click(&mut harness, "CROSS.dat");
+    assert!(harness.query_by_label_contains("DEFDAT").is_some());
+    open_list(&mut harness, "File of the program");
+    click(&mut harness, "the one that the torch is in");
+    assert!(harness.query_all_by_label_contains("LIN {X").next().is_some());
     // A dialect that the profile has no section for says so.
     open_list(&mut harness, "Dialect");
     click(&mut harness, "rapid");
     wait(&mut harness);
-    assert!(harness.query_by_label_contains("[rapid]").is_some() && !sees(&harness, "cross.src"));
+    assert!(harness.query_by_label_contains("[rapid]").is_some() && !sees(&harness, "CROSS.src"));
 }

@@ -159,6 +159,16 @@ pub(crate) fn colour_range(harness: &Window) -> [String; 2] {
     ["Lowest value of the colours", "Highest value of the colours"].map(field)
 }
 
+/// Checks that these values are shown at both ends of the colours, to a hundredth of what is between them.
+pub(crate) fn shows(harness: &Window, ends: [f64; 2], unit: &str) {
+    let number = |end: &String| end.strip_suffix(unit).and_then(|number| number.parse::<f64>().ok());
+    let near = |(text, end): (&String, f64)| {
+        number(text).is_some_and(|shown| (shown - end).abs() <= 0.01 * (ends[1] - ends[0]))
+    };
+    let shown = colour_range(harness);
+    assert!(shown.iter().zip(ends).all(near), "{shown:?}, not {ends:?}{unit}");
+}
+
 /// Searches among the parameters.
 pub(crate) fn search(harness: &mut Window, text: &str) {
     harness.get_by_role_and_label(Role::TextInput, "Search").click();
