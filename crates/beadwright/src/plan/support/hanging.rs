@@ -226,11 +226,12 @@ mod tests {
         };
         let away = passes.iter().flat_map(pieces).map(nearest).fold(f64::INFINITY, f64::min);
         let clear = CLEAR * WIDTH;
-        (away.abs() > 1e-6 && (away - clear).abs() > 1e-6).then(|| match away {
+        let kind = match away {
             ..0.0 => Below::Metal,
             away if away < clear => Below::Edge,
             _ => Below::Air,
-        })
+        };
+        (away.abs() > 1e-6 && (away - clear).abs() > 1e-6).then_some(kind)
     }
 
     const PLACES: Places = Places { step: 0.5, bridge: f64::INFINITY, clear: CLEAR * WIDTH };
