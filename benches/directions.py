@@ -4,7 +4,7 @@
 Bars and pipes that branch are united by the library manifold3d (`pip install manifold3d numpy`); hub, elbow and y-tube are our own
 examples; the others are models of $BEADWRIGHT_MODELS. Each part is taken as it is and turned about z by 37 degrees. A preform gets
 no stock for milling here, so that only what overhangs costs it metal; what is laid beside the part is milled off in either way.
-Prices are those of --set (an hour 90, a kilogram of wire 12, 60 cm3 milled a minute).
+An hour costs 90, a kilogram of wire 12, and 60 cm3 are milled in a minute.
 
 Columns: overhang in level layers and in the bodies, cm2; largest angle of layers from level; seconds to find and to plan; shares of
 the part covered and void; what the metal as built has in common with the part; then welded kg, hours of weld and mill, and price of
@@ -81,8 +81,8 @@ def bill(metrics, part):
 
 
 def tried(binary, name, model, placed, out):
-    bodies, own = out / f"{name}.bodies.toml", [*placed]
-    found, seconds = run(binary, "directions", model, *own, "-o", bodies)
+    bodies = out / f"{name}.bodies.toml"
+    found, seconds = run(binary, "directions", model, *placed, "-o", bodies)
     row = {"part": name, "find s": seconds}
     if found.returncode:
         return row | {"why": " ".join(found.stderr.split())[:160]}
@@ -90,11 +90,11 @@ def tried(binary, name, model, placed, out):
     tilt = re.search(r"up to (\d+)° from level", found.stdout)
     row |= {"bodies": bodies.read_text().count("[[body]]"), "level cm2": figures[0],
             "left cm2": figures[1] if len(figures) > 1 else figures[0], "off level": tilt[1] if tilt else "0"}
-    metrics, row["plan s"], row["why"] = planned(binary, model, own, ["--bodies", bodies], out / name)
-    whole, _, why = planned(binary, model, own, ["--preform", *BARE], out / f"{name} preform")
+    metrics, row["plan s"], row["why"] = planned(binary, model, placed, ["--bodies", bodies], out / name)
+    whole, _, why = planned(binary, model, placed, ["--preform", *BARE], out / f"{name} preform")
     part = (metrics or {}).get("mesh_volume_mm3") or (whole or {}).get("milled_part_volume_mm3")
     if metrics:
-        built = run(binary, "deviation", model, *own, out / name / "plan.json", "--json")[0]
+        built = run(binary, "deviation", model, *placed, out / name / "plan.json", "--json")[0]
         deposit = metrics["deposit"] or {}
         row |= {"covered": 100 * metrics["coverage"], "void": deposit.get("void_percent")}
         row["common"] = 100 * json.loads(built.stdout)["built"]["agreement"] if not built.returncode else None

@@ -13,10 +13,10 @@ pub(crate) struct Arguments {
     /// Folder for the logs; logs that are there go on.
     #[arg(short, long, default_value = "logs", value_name = "FOLDER")]
     output: PathBuf,
-    /// End after so many seconds; otherwise Ctrl-C ends it.
+    /// Stop after this many seconds; without it, Ctrl-C stops it.
     #[arg(long = "for", value_name = "S", value_parser = parse_seconds)]
     seconds: Option<f64>,
-    /// End when nothing was heard for so many seconds.
+    /// Stop when nothing has been heard for this many seconds.
     #[arg(long, value_name = "S", value_parser = parse_seconds)]
     until_idle: Option<f64>,
     /// Print machine-readable JSON: what was heard.

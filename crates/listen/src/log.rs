@@ -24,7 +24,7 @@ pub(crate) struct Log {
     dirty: bool,
 }
 
-/// The end of a log is sought in so many bytes.
+/// The end of the last whole line is looked for in this many bytes.
 const TAIL: u64 = 1 << 16;
 
 impl Log {

@@ -30,7 +30,7 @@ const WAITING: usize = 1 << 14;
 /// Messages that are remembered, to know those that are sent again.
 const REMEMBERED: usize = 1000;
 
-type Told = Result<Event, ConnectionError>;
+type Arrival = Result<Event, ConnectionError>;
 
 /// Listens to the topics of a broker.
 pub(crate) async fn listen((host, port): (&str, u16), hearing: Hearing<'_>) -> Result<Heard, ListenError> {
@@ -42,19 +42,19 @@ pub(crate) async fn listen((host, port): (&str, u16), hearing: Hearing<'_>) -> R
         options.set_credentials(user, password);
     }
     let (client, events) = AsyncClient::new(options, WAITING);
-    let (tell, told) = unbounded_channel();
-    let pump = tokio::spawn(pump(events, tell));
-    let heard = Reader { client, hearing, seen: VecDeque::new() }.run(told).await;
+    let (sender, incoming) = unbounded_channel();
+    let pump = tokio::spawn(pump(events, sender));
+    let heard = Reader { client, hearing, seen: VecDeque::new() }.run(incoming).await;
     pump.abort();
     heard
 }
 
 /// Hands on what happens on the connection, which is made again whenever it is lost.
-async fn pump(mut events: EventLoop, tell: UnboundedSender<Told>) {
+async fn pump(mut events: EventLoop, sender: UnboundedSender<Arrival>) {
     loop {
         let event = events.poll().await;
         let is_lost = event.is_err();
-        if tell.send(event).is_err() {
+        if sender.send(event).is_err() {
             return;
         }
         if is_lost {
@@ -71,13 +71,13 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    async fn run(mut self, mut told: UnboundedReceiver<Told>) -> Result<Heard, ListenError> {
-        self.begin(&mut told).await?;
+    async fn run(mut self, mut incoming: UnboundedReceiver<Arrival>) -> Result<Heard, ListenError> {
+        self.begin(&mut incoming).await?;
         self.hearing.begun();
         let mut tick = interval(TICK);
         loop {
             tokio::select! {
-                event = told.recv() => match event {
+                event = incoming.recv() => match event {
                     Some(event) => self.take(event)?,
                     None => return Err(ListenError::Ended),
                 },
@@ -91,19 +91,20 @@ impl Reader<'_> {
         }
         // Who must begin again because of another source wants what is published until then.
         if !self.hearing.is_failed() {
-            self.leave(&mut told).await?;
+            self.leave(&mut incoming).await?;
         }
         self.hearing.end()
     }
 
     /// Connects and subscribes.
-    async fn begin(&mut self, told: &mut UnboundedReceiver<Told>) -> Result<(), ListenError> {
+    async fn begin(&mut self, incoming: &mut UnboundedReceiver<Arrival>) -> Result<(), ListenError> {
         let until = Instant::now() + FIRST;
         let silent = |own: &Self| {
             own.hearing.refused(format!("it did not answer within {} s. Check address and network.", FIRST.as_secs()))
         };
         loop {
-            let event = timeout_at(until, told.recv()).await.map_err(|_| silent(self))?.ok_or(ListenError::Ended)?;
+            let event =
+                timeout_at(until, incoming.recv()).await.map_err(|_| silent(self))?.ok_or(ListenError::Ended)?;
             match event {
                 Ok(Event::Incoming(Incoming::ConnAck(_))) => self.subscribe()?,
                 Ok(Event::Incoming(Incoming::SubAck(answer))) => return self.allowed(&answer.return_codes),
@@ -130,7 +131,7 @@ impl Reader<'_> {
         })
     }
 
-    fn take(&mut self, event: Told) -> Result<(), ListenError> {
+    fn take(&mut self, event: Arrival) -> Result<(), ListenError> {
         match event {
             Ok(Event::Incoming(Incoming::Publish(message))) => self.publish(message),
             Ok(Event::Incoming(Incoming::ConnAck(answer))) => {
@@ -178,9 +179,9 @@ impl Reader<'_> {
     }
 
     /// Tells the broker to keep nothing for us any longer, so that the next log does not begin with the end of this one.
-    async fn leave(&mut self, told: &mut UnboundedReceiver<Told>) -> Result<(), ListenError> {
+    async fn leave(&mut self, incoming: &mut UnboundedReceiver<Arrival>) -> Result<(), ListenError> {
         // What has come already is acknowledged before the connection ends.
-        while let Ok(event) = told.try_recv() {
+        while let Ok(event) = incoming.try_recv() {
             self.take(event)?;
         }
         for topic in self.hearing.source.places() {
@@ -189,7 +190,7 @@ impl Reader<'_> {
         _ = self.client.try_disconnect();
         let until = Instant::now() + Duration::from_secs(1);
         // The connection ends with an error once all is sent.
-        while let Ok(Some(Ok(event))) = timeout_at(until, told.recv()).await {
+        while let Ok(Some(Ok(event))) = timeout_at(until, incoming.recv()).await {
             self.take(Ok(event))?;
         }
         Ok(())

@@ -3,7 +3,7 @@
 //! The server queues the values of the variables, and sends them with the times at which they changed. A row holds what all variables
 //! are at its time, but words only when they are new. While nothing changes, the server says so twice a second, and a row goes on with
 //! the same values. What the server sent while the connection was lost is asked for again; a session that it has forgotten is begun
-//! anew, and so is a subscription of which nothing is heard any longer.
+//! anew, and so is a subscription that has gone silent.
 //!
 //! Rows have the times of the values. The server may send them by another clock: of that, only differences are used.
 
@@ -31,9 +31,9 @@ use tokio::time::{interval, timeout};
 
 /// How often the server sends what has changed.
 const PUBLISHING: Duration = Duration::from_millis(100);
-/// After so many times without a change, it says that it is alive.
+/// After this many reports without a change, it says that it is alive.
 const ALIVE: u32 = 5;
-/// It forgets us after so many times without being asked: ten minutes.
+/// It forgets us when it was not asked for this many reports: ten minutes.
 const FORGOTTEN: u32 = 6000;
 /// Values that it queues for each variable, if it can.
 const QUEUE: u32 = 10_000;
@@ -41,13 +41,13 @@ const QUEUE: u32 = 10_000;
 const ANSWER: Duration = Duration::from_secs(10);
 /// Longest time between attempts to connect again.
 const AGAIN: Duration = Duration::from_secs(2);
-/// A server of which nothing is heard for so long has stopped sending.
+/// A server that has sent nothing for this long has stopped sending.
 const DEAF: Duration = Duration::from_secs(30);
 /// A first value that is older makes no row of its own, µs: it may not have changed for days. A clock that goes back by more was set.
 const OLD: i64 = 1_000_000;
 
-/// What is told to the reader.
-enum Told {
+/// What the reader hears from the connection.
+enum Arrival {
     /// A message with values, of the subscription of this number.
     Values(usize, NotificationMessage),
     /// Something happened to the connection.
@@ -80,27 +80,27 @@ pub(crate) async fn listen(hearing: Hearing<'_>) -> Result<Heard, ListenError> {
     let (endpoint, identity) = endpoint(&client, &hearing).await?;
     let opened = client.connect_to_endpoint_directly(endpoint, identity);
     let (session, events) = opened.map_err(|why| hearing.refused(format!("{why}.")))?;
-    let (tell, told) = unbounded_channel();
-    let pump = tokio::spawn(pump(events.enter(), tell.clone()));
+    let (sender, incoming) = unbounded_channel();
+    let pump = tokio::spawn(pump(events.enter(), sender.clone()));
     let values = nodes.iter().map(|_| None).collect();
     let rows = Rows { hearing, nodes, values, last: None, is_missing: false };
-    let reader = Reader { rows, session, tell, heard: Instant::now(), number: 0, subscription: 0, next: 1 };
-    let heard = reader.run(told).await;
+    let reader = Reader { rows, session, sender, heard: Instant::now(), number: 0, subscription: 0, next: 1 };
+    let heard = reader.run(incoming).await;
     pump.abort();
     heard
 }
 
 /// Hands on what happens to the connection.
-async fn pump(events: impl Stream<Item = Result<SessionPollResult, StatusCode>>, tell: UnboundedSender<Told>) {
+async fn pump(events: impl Stream<Item = Result<SessionPollResult, StatusCode>>, sender: UnboundedSender<Arrival>) {
     pin_mut!(events);
     while let Some(event) = events.next().await {
         let is_routine = matches!(event, Ok(SessionPollResult::Transport(_) | SessionPollResult::Subscription(_)));
-        if !is_routine && tell.send(Told::Session(event)).is_err() {
+        if !is_routine && sender.send(Arrival::Session(event)).is_err() {
             return;
         }
     }
     // The reader has ended if it does not want it.
-    _ = tell.send(Told::Session(Err(StatusCode::BadConnectionClosed)));
+    _ = sender.send(Arrival::Session(Err(StatusCode::BadConnectionClosed)));
 }
 
 /// The variables with their nodes.
@@ -146,20 +146,20 @@ async fn endpoint(client: &Client, hearing: &Hearing<'_>) -> Result<(EndpointDes
 /// Hands on the messages of a subscription.
 struct Notify {
     number: usize,
-    tell: UnboundedSender<Told>,
+    sender: UnboundedSender<Arrival>,
 }
 
 impl OnSubscriptionNotificationCore for Notify {
     fn on_subscription_notification(&mut self, message: NotificationMessage, _: MonitoredItemMap<'_>) {
         // The reader has ended if it does not want it.
-        _ = self.tell.send(Told::Values(self.number, message));
+        _ = self.sender.send(Arrival::Values(self.number, message));
     }
 }
 
 struct Reader<'a> {
     rows: Rows<'a>,
     session: Arc<Session>,
-    tell: UnboundedSender<Told>,
+    sender: UnboundedSender<Arrival>,
     /// When the server last said something of the subscription.
     heard: Instant,
     /// Subscriptions so far.
@@ -171,7 +171,7 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    async fn run(mut self, mut told: UnboundedReceiver<Told>) -> Result<Heard, ListenError> {
+    async fn run(mut self, mut incoming: UnboundedReceiver<Arrival>) -> Result<Heard, ListenError> {
         if !timeout(ANSWER, self.session.wait_for_connection()).await.unwrap_or(false) {
             let reason = format!(
                 "no session could be opened within {} s. Check user, password_file, and how many clients the server allows.",
@@ -184,7 +184,7 @@ impl Reader<'_> {
         let mut tick = interval(TICK);
         loop {
             tokio::select! {
-                event = told.recv() => match event {
+                event = incoming.recv() => match event {
                     Some(event) => self.take(event).await?,
                     None => return Err(ListenError::Ended),
                 },
@@ -217,7 +217,7 @@ impl Reader<'_> {
         self.heard = Instant::now();
         self.rows.values.fill(None);
         let hearing = &self.rows.hearing;
-        let notify = Notify { number: self.number, tell: self.tell.clone() };
+        let notify = Notify { number: self.number, sender: self.sender.clone() };
         let answer = self.session.create_subscription(PUBLISHING, FORGOTTEN, ALIVE, 0, 0, true, notify).await;
         self.subscription = answer.map_err(|why| hearing.refused(format!("{why}.")))?;
         let item = |(handle, (_, node)): (usize, &(String, NodeId))| MonitoredItemCreateRequest {
@@ -253,19 +253,19 @@ impl Reader<'_> {
         }
     }
 
-    async fn take(&mut self, told: Told) -> Result<(), ListenError> {
-        match told {
-            Told::Values(number, message) if number == self.number => {
+    async fn take(&mut self, incoming: Arrival) -> Result<(), ListenError> {
+        match incoming {
+            Arrival::Values(number, message) if number == self.number => {
                 self.heard = Instant::now();
                 self.message(message).await
             }
-            Told::Values(..) => Ok(()),
-            Told::Session(Ok(SessionPollResult::Reconnected(mode))) => self.again(&mode).await,
-            Told::Session(Ok(SessionPollResult::ConnectionLost(why) | SessionPollResult::ReconnectFailed(why))) => {
+            Arrival::Values(..) => Ok(()),
+            Arrival::Session(Ok(SessionPollResult::Reconnected(mode))) => self.again(&mode).await,
+            Arrival::Session(Ok(SessionPollResult::ConnectionLost(why) | SessionPollResult::ReconnectFailed(why))) => {
                 self.rows.hearing.interrupted(&format!("{why}."))
             }
-            Told::Session(Ok(_)) => Ok(()),
-            Told::Session(Err(why)) => Err(self.rows.hearing.refused(format!("{why}."))),
+            Arrival::Session(Ok(_)) => Ok(()),
+            Arrival::Session(Err(why)) => Err(self.rows.hearing.refused(format!("{why}."))),
         }
     }
 
@@ -294,7 +294,7 @@ impl Reader<'_> {
                 self.forget().await;
                 self.number += 1;
                 tokio::time::sleep(AGAIN).await;
-                _ = self.tell.send(Told::Session(Ok(SessionPollResult::Reconnected(mode.clone()))));
+                _ = self.sender.send(Arrival::Session(Ok(SessionPollResult::Reconnected(mode.clone()))));
             }
         }
         Ok(())

@@ -21,7 +21,7 @@ pub struct Source {
     pub(crate) user: Option<(String, String)>,
     /// Where messages carry their time.
     pub(crate) time: Option<Time>,
-    /// A topic without messages for so long is reported, s.
+    /// A topic without messages for this long is reported, s.
     pub(crate) silent: f64,
     /// How often a server should look at its values, ms.
     pub(crate) sampling: f64,

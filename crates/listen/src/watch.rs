@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 pub struct Until<'a> {
     /// For so long, s; without end if `None`.
     pub seconds: Option<f64>,
-    /// Until nothing was heard of any source for so long, s.
+    /// Until no source has sent anything for this long, s.
     pub idle: Option<f64>,
     /// Until this is true, which is asked ten times a second.
     pub stopped: &'a (dyn Fn() -> bool + Sync),

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-/// The cell feeds 4 % less wire than it is told, with 158 A instead of 150 A; its voltage is that of the profile.
+/// The cell feeds 4 % less wire than is set, with 158 A instead of 150 A; its voltage is that of the profile.
 const FED: f64 = 0.96;
 const CURRENT: f64 = 158.0;
 

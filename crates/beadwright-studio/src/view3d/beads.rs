@@ -254,7 +254,7 @@ impl LayerBeads {
         Self { seconds: self.seconds, ..divided }
     }
 
-    /// The same layer with both ends of each segment moved, so many times as far as is given, mm.
+    /// The same layer with both ends of each segment moved by what is given (mm), multiplied by `times`.
     pub(super) fn moved(&self, by: &[[Vec3; 2]], times: f32) -> Self {
         let ends =
             |(bead, by): (&Bead, &[Vec3; 2])| bead.between(bead.from() + times * by[0], bead.to() + times * by[1]);

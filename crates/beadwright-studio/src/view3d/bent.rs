@@ -53,7 +53,7 @@ impl Bent {
         self.most
     }
 
-    /// The layers, moved so many times as far as computed.
+    /// The layers, with the computed movement multiplied by `times`.
     pub(super) fn layers(&self, times: f64) -> Vec<Option<Arc<LayerBeads>>> {
         let moved = |layer: &Moving| Arc::new(layer.straight.moved(&layer.by, times as f32));
         self.layers.iter().map(|layer| layer.as_ref().map(moved)).collect()
@@ -64,7 +64,7 @@ impl Bent {
         Some(&self.layers.get(layer)?.as_ref()?.far)
     }
 
-    /// The plate, moved so many times as far as computed.
+    /// The plate, with the computed movement multiplied by `times`.
     pub(super) fn plate(&self, times: f64) -> Plate<'_> {
         let part = |by: &Vec3| by.length() / (self.most as f32).max(f32::MIN_POSITIVE);
         let moved = |(at, by): &(Vec3, Vec3)| (*at + times as f32 * *by).extend(part(by)).into();

@@ -97,7 +97,7 @@ impl Scene {
         (self.version, self.scan_version) = (fresh_id(), fresh_id());
     }
 
-    /// Bends plate and layers to a shape, drawn so many times as large as computed; without one they are straight again.
+    /// Bends plate and layers to a shape, its movement multiplied by a factor; without one they are straight again.
     /// A new layer makes all of them straight, too.
     pub fn bend(&mut self, wanted: Option<(&Arc<Bent>, f64)>) {
         let is_so =
@@ -185,7 +185,7 @@ impl Scene {
         self.drawn().get(index)?.as_ref()
     }
 
-    /// How many segments of a layer are drawn where so many of the plan's are shown.
+    /// How many drawn segments of a layer stand for the given number of segments of the plan.
     pub fn drawn_segments(&self, index: usize, planned: usize) -> usize {
         let both = self.layer(index).zip(self.drawn_layer(index)).filter(|_| self.bend.is_some());
         both.map_or(planned, |(layer, drawn)| drawn.segments_of(layer.piece(planned)).start)

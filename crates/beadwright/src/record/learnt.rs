@@ -107,7 +107,7 @@ const LEAST: usize = 5;
 const FAR: f64 = 4.0;
 /// Feeds must differ by this much of their mean for a line through them.
 const SPREAD: f64 = 0.1;
-/// Metal that is at least so much hotter than its surroundings tells something of the heat, K.
+/// Passes count for the heat where the metal below is this much hotter than its surroundings, K.
 const WARM: f64 = 30.0;
 
 /// The passes of a record, from the text of its `record.json`.

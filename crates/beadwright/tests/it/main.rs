@@ -56,6 +56,7 @@ mod iges;
 mod inherits;
 mod inside;
 mod line_ends;
+mod line_index;
 mod matrix;
 mod models;
 mod motion;
