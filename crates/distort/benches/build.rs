@@ -26,7 +26,7 @@ fn block(beside: usize, layers: usize) -> (Plate, Vec<Bead>) {
 }
 
 fn main() {
-    let sizes = [(50, 50, 3.2, 80), (100, 50, 3.2, 80), (100, 100, 4.0, 80), (100, 100, 3.2, 80), (100, 100, 3.2, 160)];
+    let sizes = [(50, 50, 3.2, 80), (100, 50, 3.2, 80), (100, 100, 4.0, 80), (100, 100, 3.0, 80), (100, 100, 3.0, 160)];
     println!("{:>7} {:>8} {:>6} {:>11} {:>8} {:>7}", "beads", "voxels", "steps", "iterations", "lift mm", "s");
     // `-- 100 100` only those of a size.
     let wanted: Vec<usize> = std::env::args().filter_map(|word| word.parse().ok()).collect();
