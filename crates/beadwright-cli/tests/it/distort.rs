@@ -21,6 +21,12 @@ fn the_plate_of_a_plan_bends() {
     said(&beadwright(at, &[&rough[..], &["--page", "bent.html"]].concat()));
     let page = std::fs::read_to_string(at.join("bent.html")).unwrap();
     assert!(page.contains("class=\"card bent\"") && page.contains("\"released\""), "no bent body on the page");
+    // What the page calls the lift is what the command prints as such.
+    let cell = page.split_once("released</td>").and_then(|(_, row)| row.split_once("</td>")).unwrap().0;
+    let shown: f64 = cell.rsplit('>').next().unwrap().parse().unwrap();
+    let printed = text.lines().find_map(|line| line.trim().strip_prefix("lift of the plate, released")).unwrap();
+    let printed: f64 = printed.split_whitespace().next().unwrap().parse().unwrap();
+    assert!((shown - printed).abs() < 0.0051, "{shown} on the page, {printed} printed");
     let lift = |more: &[&str]| {
         let text = said(&beadwright(at, &[&rough[..], &["--json"], more].concat()));
         let all: serde_json::Value = serde_json::from_str(&text).unwrap();

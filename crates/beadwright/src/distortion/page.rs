@@ -19,14 +19,14 @@ pub fn page(name: &str, bent: &Distortion, course: &[Eccentricity]) -> Sheet {
     );
     let mut sheet = Sheet::new(&format!("Distortion: {name}"), &lead);
     sheet.bent(&body(bent));
-    let head = ["shape", "lift of the plate, mm", "from lowest to highest, mm", "deviation of the part, mm", "RMS, mm"];
+    let head = ["shape", "lift of the plate, mm", "farthest from flat, mm", "deviation of the part, mm", "RMS, mm"];
     let row = |(name, shape): (&str, &Shape)| -> Row {
-        let figures = [shape.lift.largest, shape.lift.range, shape.deviation.largest, shape.deviation.rms];
+        let figures = [shape.lift.range, shape.lift.largest, shape.deviation.largest, shape.deviation.rms];
         std::iter::once(name.to_owned()).chain(figures.map(|mm| fixed(mm, 3))).map(|text| (text, false)).collect()
     };
     sheet.heading("How far it bends").table(&head, &shapes(bent).map(row));
     sheet.heading("While it is welded");
-    let lift = bent.steps.iter().map(|step| DVec2::new(step.time / 60.0, step.lift.largest)).collect();
+    let lift = bent.steps.iter().map(|step| DVec2::new(step.time / 60.0, step.lift.range)).collect();
     sheet.svg(&plot("Lift of the plate on its clamps", "lift, mm", lift).svg());
     let offset = course.iter().map(|at| DVec2::new(at.time / 60.0, at.offset.truncate().length())).collect();
     let EccentricityScore { mean, largest, .. } = EccentricityScore::of(course);
