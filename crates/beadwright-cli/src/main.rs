@@ -39,6 +39,7 @@ mod remedy;
 mod repair;
 mod reproduce;
 mod say;
+mod scanned;
 mod serve;
 mod several;
 mod simulate;
