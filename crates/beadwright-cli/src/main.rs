@@ -15,6 +15,7 @@ mod convert;
 mod deviation;
 mod directions;
 mod distort;
+mod ends;
 mod example;
 mod export;
 mod file;
