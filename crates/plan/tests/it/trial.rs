@@ -503,7 +503,7 @@ fn the_settings_without_hump_and_crater_are_found() {
         let [(power, a), (time, b)] = best.settings[..] else { panic!("{best:?}") };
         assert_eq!((power, time), (Parameter::LeadInPower, Parameter::CraterFillTime));
         assert!((a - 1.6).abs() < 0.1 && (b - 0.9).abs() < 0.1, "{seed}: {a} {b}");
-        assert!(best.left.iter().all(|left| left.value.abs() < 0.05 && left.plus_minus < 0.2), "{best:?}");
+        assert!(best.left.iter().all(|left| left.value.abs() < 0.05 && left.plus_minus < 0.3), "{best:?}");
         let [Some(hump), Some(crater)] = found.lengths else { panic!("{:?}", found.lengths) };
         assert!((hump.value - 8.0).abs() < 0.4 && crater.value == 12.0, "{hump:?}");
     }
