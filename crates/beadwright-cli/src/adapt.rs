@@ -1,8 +1,7 @@
 //! `beadwright adapt`: from a scan of a build to the programs of the layers that follow.
 
-use crate::{file, profile, program, progress};
+use crate::{profile, program, progress, scanned};
 use anyhow::Context;
-use beadwright::adapt::scan;
 use beadwright::adapt::{AdaptError, Adapted, Align, Rules, Unfinished};
 use beadwright::files::{Folder, Programs};
 use beadwright::plan_file::PlanFile;
@@ -18,6 +17,8 @@ pub(crate) struct Arguments {
     /// Scan: PLY, lines of x, y, z in mm (CSV, XYZ, or a few touched points), or a height map.
     #[arg(long, value_name = "FILE")]
     scan: PathBuf,
+    #[command(flatten)]
+    scanner: scanned::Scanner,
     /// Layer after which the scan was taken, counted from 1.
     #[arg(long, value_name = "LAYER", value_parser = clap::value_parser!(u32).range(1..))]
     after_layer: u32,
@@ -85,8 +86,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let plan = source.plan().with_context(context)?;
     let profile = source.profile(&arguments.wanted)?;
     let (task, bar) = progress::task()?;
-    let context = || format!("{}", arguments.scan.display());
-    let scan = scan::read(&file::read(&arguments.scan)?, &task).with_context(context)?;
+    let scan = arguments.scanner.read(&arguments.scan, 1.0, &task)?;
     let how = match arguments.align {
         How::AsIs => Align::AsIs,
         How::Plate => Align::Plate,

@@ -12,6 +12,7 @@ use beadwright::files::write_file;
 use beadwright::heat::{HeatSettings, MeasuredWall, Wall, WallLaw};
 use beadwright::profile::edit;
 use beadwright::report::bead_window;
+use beadwright::trial::{Found, Parameter};
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -41,7 +42,6 @@ pub(crate) enum Command {
 }
 
 #[derive(clap::Args)]
-#[command(group = clap::ArgGroup::new("goal").args(["want", "from"]).multiple(true))]
 pub(crate) struct Fit {
     /// CSV with one bead per line; the first line names the columns with their units, such as current_a, width_mm. May be left out
     /// with --from.
@@ -74,10 +74,11 @@ pub(crate) struct Fit {
     tolerance: f64,
     /// Profile on which that for the wanted bead is based (cmt-al2319-kuka if left out), or the one of the builds that were recorded: a
     /// built-in name or a TOML file.
-    #[arg(long, short, requires = "goal", value_name = "NAME|FILE")]
+    #[arg(long, short, value_name = "NAME|FILE")]
     profile: Option<String>,
-    /// Profile to write: with the bead, the layer height and the parameters of the wanted bead, or with the values that records show.
-    #[arg(long, requires = "goal", value_name = "FILE.toml")]
+    /// Profile to write: with the bead, the layer height and the parameters of the wanted bead, with the values that records show, or
+    /// with the starts and ends that trials show.
+    #[arg(long, value_name = "FILE.toml")]
     to: Option<PathBuf>,
     #[command(flatten)]
     layering: LayeringArguments,
@@ -308,8 +309,20 @@ fn fit(arguments: &Fit) -> anyhow::Result<()> {
             json: arguments.json,
         });
     };
-    anyhow::ensure!(arguments.to.is_none() || arguments.want.is_some(), "--to needs --want where beads are fitted.");
     let text = crate::learn::into_sheet(&read(data)?, &arguments.from)?;
+    if let Some(found) = Found::read(&text).with_context(|| data.display().to_string())? {
+        anyhow::ensure!(
+            arguments.want.is_none(),
+            "--want needs a sheet of single beads: this one is of starts and ends, or of corners."
+        );
+        let (profile, to) = (arguments.profile.as_deref(), arguments.to.as_deref());
+        return crate::ends::run(&found, &crate::ends::Wanted { profile, to, json: arguments.json });
+    }
+    let goes_into_profile = arguments.to.is_some() || arguments.profile.is_some() && arguments.from.is_empty();
+    anyhow::ensure!(
+        !goes_into_profile || arguments.want.is_some(),
+        "--profile and --to need --want where beads are fitted."
+    );
     let columns = Columns {
         inputs: arguments.inputs.clone(),
         width: Some(arguments.width.clone()),
@@ -457,14 +470,17 @@ fn wanted(arguments: &Fit, library: &BeadLibrary, (width, layer_height): (f64, f
 fn with_recipe(arguments: &Fit, library: &BeadLibrary, recipe: &Recipe) -> anyhow::Result<String> {
     let bead = recipe.prediction.bead();
     let lengths = [("bead.width", bead.width), ("bead.height", bead.height), ("layers.height", recipe.layer_height)];
-    let keys = ["deposition_speed", "wire_feed_speed", "current", "voltage"];
-    let process = library.inputs.iter().zip(&recipe.values).filter(|(input, _)| keys.contains(&input.name.as_str()));
-    let process = process.map(|(input, value)| (format!("process.{}", input.name), *value));
-    let lengths = lengths.into_iter().map(|(key, value)| (key.to_owned(), value));
+    let key = |name: &str| match name {
+        "current" => Some("process.current"),
+        "voltage" => Some("process.voltage"),
+        _ => Parameter::named(name)?.key(),
+    };
+    let inputs = library.inputs.iter().zip(&recipe.values);
+    let process = inputs.filter_map(|(input, value)| Some((key(&input.name)?, *value)));
     let name = arguments.profile.as_deref().unwrap_or(profile::USUAL);
     let mut text = profile::text(name)?;
     for (key, value) in process.chain(lengths) {
-        text = edit::with_value(&text, &key, &format!("{value:.3}"))?;
+        text = edit::with_value(&text, key, &format!("{value:.3}"))?;
     }
     profile::parse(&text, &profile::folder(name)).context("the profile with the wanted bead")?;
     Ok(text)

@@ -1,10 +1,10 @@
 //! `beadwright calibrate`: tool, base, axes of a positioner and scanner from measured points.
 
-use crate::{file, reach, say};
+use crate::{file, profile, reach, say};
 use anyhow::Context;
 use beadwright::files::write_file;
 use beadwright::profile::edit;
-use beadwright::robot::calibrate::{self, AtAngle, Calibrated, Flange, Pair, Residuals, Touch};
+use beadwright::robot::calibrate::{self, AtAngle, Calibrated, Flange, Pair, Residuals, Touch, TurningAxis};
 use glam::{DMat3, DQuat, DVec3, EulerRot};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -24,9 +24,9 @@ enum What {
     /// (where x is 0).
     Base(Kept),
     /// The line about which an axis of a positioner turns: one point of the plate at three angles or more. Columns angle (°), x, y, z.
-    Axis(Points),
+    Axis(Axis),
     /// The frame of a scanner: targets that it and the robot know. Columns sx, sy, sz (scanner), x, y, z (robot).
-    Scanner(Posed),
+    Scanner(Seen),
 }
 
 #[derive(clap::Args)]
@@ -46,6 +46,29 @@ struct Posed {
     /// rotation vector in rad).
     #[arg(long, value_enum, default_value_t = Robot::Kuka)]
     robot: Robot,
+}
+
+#[derive(clap::Args)]
+struct Axis {
+    #[command(flatten)]
+    points: Points,
+    /// File to change. Of a cell with a turn table, table.axis and table.direction: the points are then given in the robot's base. Of a
+    /// profile, direction and through of an axis of program.positioner: the points are then given in the frame of the part, with all
+    /// other axes at 0.
+    #[arg(long, value_name = "FILE.toml")]
+    write: Option<PathBuf>,
+    /// Number of the axis in program.positioner, from the floor to the part.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2), value_name = "N")]
+    axis: u8,
+}
+
+#[derive(clap::Args)]
+struct Seen {
+    #[command(flatten)]
+    posed: Posed,
+    /// Cell to change: the frame goes into scanner.position and scanner.rotation. Commands that read scans take it with --scanner.
+    #[arg(long, value_name = "CELL.toml")]
+    write: Option<PathBuf>,
 }
 
 #[derive(clap::Args)]
@@ -111,8 +134,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.what {
         What::Tool(kept) => tool(&kept.posed, kept.write.as_deref()),
         What::Base(kept) => base(&kept.posed, kept.write.as_deref()),
-        What::Axis(points) => axis(points),
-        What::Scanner(posed) => scanner(posed),
+        What::Axis(wanted) => axis(wanted),
+        What::Scanner(seen) => scanner(&seen.posed, seen.write.as_deref()),
     }
 }
 
@@ -160,12 +183,15 @@ fn base(Posed { points, robot }: &Posed, cell: Option<&Path>) -> anyhow::Result<
     placed(points.json, &found, *robot, "frame of the part", "touch")
 }
 
-fn axis(points: &Points) -> anyhow::Result<()> {
+fn axis(Axis { points, write, axis }: &Axis) -> anyhow::Result<()> {
     let table = Table::read(&points.points)?;
     let rows = table.rows(&["angle", "x", "y", "z"])?;
     let measured: Vec<AtAngle> =
         rows.iter().map(|row| AtAngle { angle: row[0], at: DVec3::from_slice(&row[1..]) }).collect();
     let found = calibrate::axis(&measured).with_context(|| table.name.clone())?;
+    if let Some(path) = write {
+        write_axis(path, usize::from(*axis) - 1, &found)?;
+    }
     let [direction, through] = [found.direction, found.centre].map(|v| v.to_array());
     let value = serde_json::json!({ "direction": direction, "direction_within": finite(found.direction_within),
         "through": through, "through_within": finite(found.centre_within), "radius": found.radius,
@@ -187,12 +213,49 @@ fn axis(points: &Points) -> anyhow::Result<()> {
     say_it(points.json, &value, &found.residuals, "angle", words)
 }
 
-fn scanner(Posed { points, robot }: &Posed) -> anyhow::Result<()> {
+/// Changes the axis of the turn table of a cell, or one of the positioner of a profile.
+fn write_axis(path: &Path, index: usize, found: &TurningAxis) -> anyhow::Result<()> {
+    let text = file::text(path)?;
+    let named = || path.display().to_string();
+    if let Ok(cell) = reach::parse_cell(path, &text) {
+        anyhow::ensure!(
+            cell.table.is_some(),
+            "{}: the cell has no turn table. Add [table] with its limits, or give the profile whose program.positioner holds the axis.",
+            named()
+        );
+        let leans = found.direction.z.abs().min(1.0).acos().to_degrees();
+        anyhow::ensure!(
+            leans < UPRIGHT,
+            "the axis leans by {leans:.1}°, but the turn table of a cell is vertical (within {UPRIGHT}°): put it into program.positioner \
+             of a profile."
+        );
+        let (place, way) = (format!("[{:.3}, {:.3}]", found.centre.x, found.centre.y), found.direction.z.signum());
+        return self::write(Some(path), &[("table.axis", place), ("table.direction", format!("{way:.0}"))]);
+    }
+    let key = |name: &str| format!("program.positioner.axes.{index}.{name}");
+    let values =
+        [(key("direction"), format!("[{}]", shown(found.direction, 6))), (key("through"), array(found.centre))];
+    let text = values.iter().try_fold(text, |text, (key, value)| edit::with_value(&text, key, value)).with_context(|| {
+        format!(
+            "{}: program.positioner.axes has no axis {}. List the axes from the floor to the part with limits and speed; `beadwright \
+             profile positioner NAME` prints those of a built-in machine",
+            named(),
+            index + 1
+        )
+    })?;
+    profile::parse(&text, &profile::folder(&named()))?;
+    Ok(write_file(path, text.as_bytes())?)
+}
+
+fn scanner(Posed { points, robot }: &Posed, cell: Option<&Path>) -> anyhow::Result<()> {
     let table = Table::read(&points.points)?;
     let rows = table.rows(&["sx", "sy", "sz", "x", "y", "z"])?;
     let pairs: Vec<Pair> =
         rows.iter().map(|row| Pair { scanned: DVec3::from_slice(row), known: DVec3::from_slice(&row[3..]) }).collect();
     let found = calibrate::scanner(&pairs).with_context(|| table.name.clone())?;
+    let (z, y, x) = found.place.turn.to_euler(EulerRot::ZYX);
+    let rotation = format!("[{}]", shown(DVec3::new(z, y, x).map(f64::to_degrees), 4));
+    write(cell, &[("scanner.position", array(found.place.at)), ("scanner.rotation", rotation)])?;
     placed(points.json, &found, *robot, "scanner in the robot's base", "target")
 }
 

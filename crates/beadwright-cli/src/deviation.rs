@@ -1,9 +1,8 @@
 //! `beadwright deviation`: how far a scan of the built part, or what a plan builds, lies from the part.
 
 use crate::program::Source;
-use crate::{file, model, profile, progress};
+use crate::{model, profile, progress, scanned};
 use anyhow::Context;
-use beadwright::adapt::scan;
 use beadwright::as_built::{self, AsBuilt};
 use beadwright::deviation::{Deviation, Doubt, Figures, deviation};
 use beadwright::model::{Mesh, Units};
@@ -21,6 +20,8 @@ pub(crate) struct Arguments {
     /// then the shape that its beads build is compared, with its own profile.
     #[arg(value_name = "SCAN|PLAN")]
     scan: PathBuf,
+    #[command(flatten)]
+    scanner: scanned::Scanner,
     /// Unit of the scan's coordinates, if its file does not give it.
     #[arg(long, value_parser = model::parse_units, value_name = "mm|cm|m|in", default_value = "mm")]
     scan_units: Units,
@@ -116,9 +117,7 @@ impl Arguments {
         let profile = profile::load(name, &self.wanted.set)?;
         let part = self.part(&profile, task)?;
         let context = || format!("{}", self.scan.display());
-        let mut scan = scan::read(&file::read(&self.scan)?, task).with_context(context)?;
-        let millimetres = self.scan_units.in_mm();
-        scan.points.iter_mut().for_each(|point| *point *= millimetres);
+        let scan = self.scanner.read(&self.scan, self.scan_units.in_mm(), task)?;
         let compared = deviation(&part, &scan.points, profile.fill.machining_allowance, task);
         let deviation = compared.with_context(context)?;
         Ok(Compared { format: scan.format.to_string(), deviation, built: None })

@@ -1,11 +1,15 @@
 //! `beadwright record`: a plan joined with the logs of its build, as a record that shows later changes.
 
-use crate::{file, profile, program, progress, say};
+use crate::{file, profile, program, progress, say, scanned};
 use anyhow::Context;
 use beadwright::export::Beads;
 use beadwright::files::Folder;
 use beadwright::heat::{self, HeatSettings};
-use beadwright::record::{self, Broken, FileHash, Finding, JSON, Part, Quantity, Record, Settings, Source};
+use beadwright::layer::Layer;
+use beadwright::profile::Profile;
+use beadwright::record::{
+    self, Broken, FileHash, Finding, Heights, JSON, Part, PlannedPass, Quantity, Record, Settings, Source,
+};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{BufReader, Write};
@@ -41,6 +45,18 @@ pub(crate) struct Arguments {
     /// Shortest stretch out of its window that counts, s.
     #[arg(long, value_name = "S")]
     least: Option<f64>,
+    /// Scan of the build: PLY, STL, lines of x, y, z in mm, or a height map, with z = 0 on the plate; may be given several times, each
+    /// with its --after-layer.
+    #[arg(long, value_name = "FILE")]
+    scan: Vec<PathBuf>,
+    /// Layer after which the scan was taken, counted from 1.
+    #[arg(long, value_name = "LAYER", value_parser = clap::value_parser!(u32).range(1..))]
+    after_layer: Vec<u32>,
+    #[command(flatten)]
+    scanner: scanned::Scanner,
+    /// How far the top of a pass may be from its planned height, mm; by default half of layers.height.
+    #[arg(long, value_name = "MM")]
+    height: Option<f64>,
     /// Shortest stop of the build that is reported, s longer than planned.
     #[arg(long, value_name = "S")]
     stop: Option<f64>,
@@ -51,7 +67,7 @@ pub(crate) struct Arguments {
     #[arg(short, long, default_value = "record", value_name = "FOLDER")]
     output: PathBuf,
     /// Say what was changed in the record of this folder since it was written, instead of writing one.
-    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["trace", "trace_file", "window", "least", "stop", "temperatures"])]
+    #[arg(long, value_name = "FOLDER", conflicts_with_all = ["trace", "trace_file", "window", "least", "stop", "after_layer", "height", "temperatures"])]
     verify: Option<PathBuf>,
     /// With --verify: the seal that was printed when the record was written.
     #[arg(long, requires = "verify", value_name = "HASH")]
@@ -121,7 +137,10 @@ fn write(arguments: &Arguments) -> anyhow::Result<()> {
         anyhow::bail!("--column {}={column}: no log has such a column.", quantity.name());
     }
     let settings = arguments.settings(record::settings(&profile));
-    let record = record::join(&planned, &sources, &settings).with_context(|| format!("{}", path.display()))?;
+    let mut record = record::join(&planned, &sources, &settings).with_context(|| format!("{}", path.display()))?;
+    for heights in arguments.heights(&plan.layers, &profile, &planned)? {
+        record.add_heights(&planned, &heights, &settings);
+    }
     drop(sources);
     let (trace, inputs) = (arguments.traced()?, arguments.inputs()?);
     let part = Part {
@@ -155,6 +174,12 @@ fn print(part: &Part<'_>, seal: &str, folder: &Path) -> anyhow::Result<()> {
             "  {:<24} {} rows, {} arcs, {} of them aligned within {:.2} s",
             log.name, log.tally.rows, log.arcs, log.matched, log.within
         )?;
+    }
+    let off: Vec<f64> = passes.iter().filter_map(|row| Some(row.off?.mean)).collect();
+    if !off.is_empty() {
+        let mean = off.iter().sum::<f64>() / off.len() as f64;
+        let scanned = if off.len() == 1 { "1 pass was".to_owned() } else { format!("{} passes were", off.len()) };
+        writeln!(out, "  {scanned} scanned: the tops are {mean:+.2} mm from the plan on average")?;
     }
     let mut warnings = say::warnings();
     for Finding { sentence, .. } in findings.iter().take(SHOWN) {
@@ -192,8 +217,36 @@ impl Arguments {
             windows: windows.into_iter().collect(),
             least: self.least.unwrap_or(usual.least),
             stop: self.stop.unwrap_or(usual.stop),
+            height: self.height.or(usual.height),
             ..usual
         }
+    }
+
+    /// What each scan shows of the passes of its layer.
+    fn heights(
+        &self,
+        layers: &[Layer],
+        profile: &Profile,
+        planned: &[PlannedPass],
+    ) -> anyhow::Result<Vec<Vec<Heights>>> {
+        let (scans, numbers) = (self.scan.len(), self.after_layer.len());
+        anyhow::ensure!(scans == numbers, "{scans} scans and {numbers} layers: give --after-layer with each --scan.");
+        let twice = self.after_layer.iter().enumerate().find(|(k, number)| self.after_layer[..*k].contains(number));
+        if let Some((_, number)) = twice {
+            anyhow::bail!("--after-layer {number} is given twice: put the scans of a layer into one file.");
+        }
+        if scans == 0 {
+            return Ok(Vec::new());
+        }
+        let (task, bar) = progress::task()?;
+        let of_scan = |(path, number): (&PathBuf, &u32)| {
+            let scan = self.scanner.read(path, 1.0, &task)?;
+            let found = record::heights(layers, profile, planned, &scan.points, *number as usize);
+            found.with_context(|| path.display().to_string())
+        };
+        let all = self.scan.iter().zip(&self.after_layer).map(of_scan).collect();
+        bar.finish_and_clear();
+        all
     }
 
     /// What else belongs to the part: of the file, and given one by one.
@@ -213,7 +266,7 @@ impl Arguments {
                 .and_then(|opened| FileHash::read(&name(path), opened))
                 .with_context(|| format!("{}", path.display()))
         };
-        self.plan.iter().chain(&self.source).chain(&self.file).map(hash).collect()
+        self.plan.iter().chain(&self.source).chain(&self.scan).chain(&self.file).map(hash).collect()
     }
 }
 

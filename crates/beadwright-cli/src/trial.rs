@@ -1,9 +1,8 @@
 //! `beadwright bead trial`: programs for trial beads, and the sheet for the measurements.
 
-use crate::{file, profile, program, progress};
+use crate::{file, profile, program, progress, scanned};
 use anyhow::Context;
 use beadwright::Layer;
-use beadwright::adapt::scan;
 use beadwright::files::{Folder, PLAN, write_file};
 use beadwright::number::fixed;
 use beadwright::trial::{self, Design, Factor, Layout, Plate, PlatePlan, Series, Shape};
@@ -14,8 +13,10 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Arguments {
     #[command(flatten)]
     wanted: profile::Wanted,
-    /// What is varied: deposition_speed (mm/s), wire_feed_speed (m/min), job (values one by one: job=11,12,15), and for some shapes
-    /// stepover, dwell (s) or angle (°); may be given several times.
+    /// What is varied: deposition_speed (mm/s), wire_feed_speed (m/min), job (values one by one: job=11,12,15); how beads begin and end:
+    /// lead_in_length, lead_out_length (mm), lead_in_power, lead_out_power, crater_fill_time (s), crater_power; weave_length,
+    /// weave_amplitude (mm), weave_dwell (s), weave_file; and for some shapes stepover, dwell (s) or angle (°). May be given several
+    /// times.
     #[arg(long, required = true, value_name = "NAME=MIN..MAX")]
     vary: Vec<Factor>,
     /// What is welded with each combination.
@@ -74,6 +75,8 @@ pub(crate) struct Measure {
     sheet: PathBuf,
     /// Scan of the plate in the coordinates of its program: STL, PLY or points, mm.
     scan: PathBuf,
+    #[command(flatten)]
+    scanner: scanned::Scanner,
     /// Number of the plate.
     #[arg(long, default_value_t = 1, value_name = "N")]
     plate: usize,
@@ -86,6 +89,8 @@ pub(crate) struct Measure {
 enum Welded {
     /// Single beads, for width and height.
     Bead,
+    /// Single beads, for the hump where they begin and the crater where they end.
+    Ends,
     /// Beads side by side, for the stepover.
     Overlap,
     /// Walls of one bead a layer, for how they grow with the waits between layers.
@@ -155,6 +160,7 @@ fn series(arguments: &Arguments, profile: &beadwright::Profile, plate: Plate) ->
     }
     let shape = match arguments.shape {
         Welded::Bead => Shape::Bead,
+        Welded::Ends => Shape::Ends,
         Welded::Overlap => Shape::Overlap(arguments.beads.into()),
         Welded::Wall => Shape::Wall(arguments.layers.into()),
         Welded::Corner => Shape::Corner,
@@ -217,7 +223,11 @@ fn say(arguments: &Arguments, series: &Series, plans: &[PlatePlan]) -> anyhow::R
         Shape::Wall(_) => {
             format!("Fill in {folder}/sheet.csv, then: beadwright bead walls {folder}/sheet.csv -p PROFILE")
         }
-        Shape::Overlap(_) | Shape::Corner => format!("Fill in {folder}/sheet.csv."),
+        Shape::Ends => format!(
+            "Fill in {folder}/sheet.csv, then: beadwright bead fit {folder}/sheet.csv -p PROFILE --to FILE.toml"
+        ),
+        Shape::Corner => format!("Fill in {folder}/sheet.csv, then: beadwright bead fit {folder}/sheet.csv"),
+        Shape::Overlap(_) => format!("Fill in {folder}/sheet.csv."),
     };
     Ok(writeln!(out, "\n{folder}/sheet.html shows what lies where. {fit}")?)
 }
@@ -250,7 +260,7 @@ pub(crate) fn measure(arguments: &Measure) -> anyhow::Result<()> {
     let beads: Vec<_> = plan.layers.iter().map_while(bead).collect();
     let (task, bar) = progress::task()?;
     let named = || arguments.scan.display().to_string();
-    let scan = scan::read(&file::read(&arguments.scan)?, &task).with_context(named)?;
+    let scan = arguments.scanner.read(&arguments.scan, 1.0, &task)?;
     bar.finish_and_clear();
     let reach = plan.layers.first().and_then(|layer| layer.passes.first()).map_or(0.0, |pass| REACH * pass.width.max());
     let sizes = trial::measured(&scan.points, &beads, reach).with_context(named)?;

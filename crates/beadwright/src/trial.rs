@@ -12,20 +12,27 @@ use crate::model::RepairReport;
 use crate::number::fixed;
 use crate::plan::{Header, Summary};
 use crate::profile::Profile;
+use crate::program::LayerWeave;
 use crate::report::sheet::{Row, Sheet};
 use crate::warning::Warnings;
 use std::fmt::Write;
 
 /// What the trials of a profile vary.
 pub fn nominal(profile: &Profile) -> Nominal {
-    Nominal { process: profile.process.clone(), width: profile.bead.width, height: profile.layers.height }
+    Nominal {
+        process: profile.process.clone(),
+        ends: profile.start_stop.clone(),
+        amplitude: profile.weave.as_ref().map(|weave| weave.amplitude),
+        width: profile.bead.width,
+        height: profile.layers.height,
+    }
 }
 
 /// The plan of one plate: its layers, and the profile that welds them.
 pub struct PlatePlan {
     /// Name of the plate, for files and programs.
     pub name: String,
-    /// The profile with a row of `process.layers` for each trial whose wire feed or job differs.
+    /// The profile with a row of `process.layers`, `start_stop.layers` and `weave.layers` for each trial that differs in them.
     pub profile: Profile,
     layers: Vec<crate::layer::Layer>,
 }
@@ -33,9 +40,12 @@ pub struct PlatePlan {
 impl PlatePlan {
     /// The plan of plate `index`, from 0.
     pub fn new(series: &Series, index: usize, profile: &Profile) -> Self {
-        let (layers, process) = series.layers(index);
+        let (layers, spans) = series.layers(index);
         let mut profile = profile.clone();
-        profile.process = process;
+        (profile.process.layers, profile.start_stop.layers) = (series.processes(&spans), series.ends(&spans));
+        if let Some(weave) = &mut profile.weave {
+            weave.layers = spans.iter().filter_map(|span| row_of_weave(series, span)).collect();
+        }
         Self { name: Self::name(index), profile, layers }
     }
 
@@ -69,6 +79,92 @@ impl PlatePlan {
         chunks.extend(files.end(&summary, &RepairReport::default(), None)?);
         Ok(chunks)
     }
+}
+
+/// How a trial weaves, if that is varied.
+fn row_of_weave(series: &Series, &Span { from, to, trial }: &Span<'_>) -> Option<LayerWeave> {
+    let value = |parameter| series.value(&trial.values, parameter);
+    let usual = LayerWeave { from, to, ..LayerWeave::default() };
+    let row = LayerWeave {
+        length: value(Parameter::WeaveLength),
+        amplitude: value(Parameter::WeaveAmplitude),
+        dwell: value(Parameter::WeaveDwell),
+        file: value(Parameter::WeaveFile).map(|file| file as u32),
+        ..usual.clone()
+    };
+    (row != usual).then_some(row)
+}
+
+/// A value of `[start_stop]` that trials of starts and ends show.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct EndsLesson {
+    /// Its key.
+    pub key: &'static str,
+    /// The value of the profile.
+    pub before: f64,
+    /// What the trials say; settings that were chosen have no interval.
+    pub after: f64,
+    /// Half the width of the interval in which the next bead is expected with 95 % probability; `None` for settings.
+    pub plus_minus: Option<f64>,
+}
+
+/// What trials of starts and ends say of a profile.
+#[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
+pub struct EndsLearnt {
+    /// Values for the profile.
+    pub lessons: Vec<EndsLesson>,
+    /// What no value can express, as sentences.
+    pub notes: Vec<String>,
+}
+
+/// What trials of starts and ends say of a profile: the settings with which hump and crater are least, and the keys with which the
+/// deposit model lays what is left of them. Hot start and lead-out change the metal there, so that their part is taken off.
+///
+/// # Errors
+/// [`FoundError`] if the profile's process lies outside what was tried.
+pub fn ends_learnt(found: &Found, profile: &Profile) -> Result<EndsLearnt, FoundError> {
+    let nominal = nominal(profile);
+    let weave = profile.weave.as_ref();
+    let best = found.best(|parameter| match parameter {
+        Parameter::DepositionSpeed => Some(profile.process.deposition_speed),
+        Parameter::WireFeedSpeed => Some(profile.process.wire_feed_speed),
+        Parameter::WeaveLength => weave.map(|weave| weave.length),
+        Parameter::WeaveAmplitude => weave.map(|weave| weave.amplitude),
+        Parameter::WeaveDwell => weave.map(|weave| weave.dwell),
+        _ => None,
+    })?;
+    let mut ends = profile.start_stop.clone();
+    let EndsLearnt { mut lessons, mut notes } = EndsLearnt::default();
+    for (parameter, value) in best.settings {
+        let (Some(key), Some(before)) = (parameter.key(), nominal.end(parameter)) else { continue };
+        match parameter {
+            Parameter::LeadInLength => ends.lead_in_length = value,
+            Parameter::LeadInPower => ends.lead_in_power = value,
+            Parameter::LeadOutLength => ends.lead_out_length = value,
+            Parameter::LeadOutPower => ends.lead_out_power = value,
+            _ => {}
+        }
+        lessons.push(EndsLesson { key, before, after: value, plus_minus: None });
+    }
+    let ([hump, crater], [hump_length, crater_length]) = (best.left, found.lengths);
+    let (height, own) = (profile.bead.height, &profile.start_stop);
+    let known = [
+        ("start_stop.hump_height", own.hump_height, Some((ends.hump_of(hump.value, height), hump.plus_minus))),
+        ("start_stop.hump_length", own.hump_length, hump_length.map(|length| (length.value, length.plus_minus))),
+        ("start_stop.crater_depth", own.crater_depth, Some((ends.crater_of(crater.value, height), crater.plus_minus))),
+        ("start_stop.crater_length", own.crater_length, crater_length.map(|length| (length.value, length.plus_minus))),
+    ];
+    for (key, before, after) in known {
+        let Some((value, within)) = after else { continue };
+        if value < 0.0 {
+            // Metal that is there cannot be taken away by a hump or crater of less than nothing.
+            notes.push(format!(
+                "{key} would have to be {value:.2} mm: the deposit model lays more of the lead's metal upwards than was measured."
+            ));
+        }
+        lessons.push(EndsLesson { key, before, after: value.max(0.0), plus_minus: Some(within) });
+    }
+    Ok(EndsLearnt { lessons, notes })
 }
 
 /// The page for the bench: a map of each plate and its trials.

@@ -96,6 +96,19 @@ impl From<Option<f64>> for Given {
     }
 }
 
+/// What is impossible in a row for some layers, given the limits of what holds in them.
+pub fn broken_row(section: &str, from: usize, to: usize, limits: &[Limit]) -> Option<Broken> {
+    let reason = if from == 0 || to < from {
+        "layers count from 1, and the last one comes after the first.".to_owned()
+    } else {
+        let Limit { key, least, greatest, unit, reason, .. } = limits.iter().find(|limit| !limit.holds())?;
+        let name = key.rsplit_once('.').map_or(*key, |(_, name)| name);
+        format!("its {name} must lie between {least} and {greatest} {unit}: {reason}.")
+    };
+    let value = format!("{{ from = {from}, to = {to}, … }}");
+    Some(Broken { key: format!("{section}.layers"), value, reason })
+}
+
 /// Rows of limits: key, value, least and greatest value, unit, reason.
 #[macro_export]
 macro_rules! limits {

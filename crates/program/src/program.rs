@@ -27,7 +27,7 @@ pub use safety::Safety;
 pub use settings::ProgramSettings;
 pub use turns::Turns;
 use weave::Swing;
-pub use weave::Weave;
+pub use weave::{LayerWeave, Weave};
 
 use crate::number;
 use bead_plan::layer::Layer;
@@ -222,8 +222,9 @@ pub struct Programmer {
     tilt: Option<Tilt>,
     table: Option<Follower>,
     positioner: Option<Holder>,
-    /// The weave, if it is written as moves.
+    /// The weave, if it is written as moves, and that of the current layer.
     weave: Option<Weave>,
+    swung: Option<Weave>,
 }
 
 impl Programmer {
@@ -244,6 +245,7 @@ impl Programmer {
             table: None,
             positioner: None,
             weave: None,
+            swung: None,
         }
     }
 
@@ -316,6 +318,7 @@ impl Programmer {
         self.pass_over(layer);
         // A build may be resumed at any layer, so each sets the wire feed that it needs.
         self.feed = None;
+        self.swung = self.weave.as_ref().map(|weave| weave.at_layer(layer.index));
         let mut begun = self.torch.begin_layer(layer, first);
         for (i, pass) in layer.passes.iter().enumerate().skip(first) {
             self.pass(i + 1, pass, &mut begun, &mut instructions);
@@ -439,7 +442,7 @@ impl Programmer {
     /// The pieces in which a path is executed: as a weave, as fitted pieces, or as all its moves.
     fn pieces(&self, moves: &[(DVec3, f64)], leans: &[DVec2]) -> Vec<Stretch> {
         let speed = |end: usize| self.torch.speed_at(moves[end].1);
-        if let Some(weave) = &self.weave {
+        if let Some(weave) = &self.swung {
             let path: Vec<DVec3> = moves.iter().map(|(to, _)| *to).collect();
             let speeds: Vec<f64> = (0..moves.len()).map(speed).collect();
             let swings = weave::swings(&path, &speeds, weave).into_iter();

@@ -13,6 +13,8 @@ pub enum Kind {
     ArcLost,
     /// A quantity left its window.
     OutOfWindow(Quantity),
+    /// A scan shows it higher or lower than planned.
+    Height,
     /// The pass began on metal that was too hot.
     TooHot,
     /// The arc was struck again within a pass.
@@ -48,6 +50,7 @@ impl Kind {
             Self::NotWelded => "not welded",
             Self::ArcLost => "arc lost",
             Self::OutOfWindow(quantity) => quantity.word(),
+            Self::Height => "height",
             Self::TooHot => "too hot",
             Self::StruckAgain => "struck again",
             Self::Repeated => "repeated",

@@ -108,6 +108,8 @@ fn row(
         quantities,
         before: [pass.temperature, before],
         peak,
+        height: [None; 2],
+        off: None,
         notes: Vec::new(),
         findings: 0,
     }

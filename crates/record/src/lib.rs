@@ -15,6 +15,7 @@
 //! | `planned` | what was planned: passes with their path in space and time |
 //! | `welded` | which arcs belong to which pass, and where the torch was |
 //! | `figures` | what was measured during a pass, stretches out of their window |
+//! | `height` | heights of passes from scans, added to it |
 //! | `record`, `join` | [`Record`]: all of it joined |
 //! | `judge`, `finding` | what is doubtful, in sentences |
 //! | `chain` | hashes of rows and files |
@@ -26,6 +27,7 @@ mod clock;
 mod error;
 mod figures;
 mod finding;
+mod height;
 mod join;
 mod judge;
 mod planned;
@@ -43,6 +45,7 @@ pub use clock::Trust;
 pub use error::RecordError;
 pub use figures::Measured;
 pub use finding::{Finding, Kind};
+pub use height::Heights;
 pub use join::join;
 pub use planned::{Place, PlannedPass, Spot};
 pub use quantity::Quantity;

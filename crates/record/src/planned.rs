@@ -75,6 +75,22 @@ impl PlannedPass {
         Spot { along, at: self.path.last().map_or(DVec3::ZERO, |last| last.at) }
     }
 
+    /// When the torch is at a distance along the pass, mm, and where it is.
+    pub fn at(&self, along: f64) -> (f64, Spot) {
+        let mut passed = 0.0;
+        for pair in self.path.windows(2) {
+            let length = pair[0].at.distance(pair[1].at);
+            if along < passed + length {
+                let part = ((along - passed) / length).max(0.0);
+                let time = pair[0].time + part * (pair[1].time - pair[0].time);
+                return (time, Spot { along, at: pair[0].at.lerp(pair[1].at, part) });
+            }
+            passed += length;
+        }
+        let last = self.path.last();
+        (last.map_or(0.0, |last| last.time), Spot { along: passed, at: last.map_or(DVec3::ZERO, |last| last.at) })
+    }
+
     /// The path between two planned times.
     pub fn stretch(&self, from: f64, to: f64) -> Vec<DVec3> {
         let inside = self.path.iter().filter(|place| place.time > from && place.time < to).map(|place| place.at);

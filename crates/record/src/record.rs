@@ -47,6 +47,10 @@ pub struct PassRow {
     pub before: [Option<f64>; 2],
     /// Greatest temperature during the pass, °C.
     pub peak: Option<f64>,
+    /// Mean height of its top where a scan lies over it, mm: planned, measured.
+    pub height: [Option<f64>; 2],
+    /// Measured minus planned height along it, mm.
+    pub off: Option<Measured>,
     /// What the operator noted.
     pub notes: Vec<String>,
     /// Number of findings.

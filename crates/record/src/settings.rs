@@ -18,6 +18,8 @@ pub struct Settings {
     pub hottest: Option<f64>,
     /// Shortest stop that is reported, s more than planned.
     pub stop: f64,
+    /// How far the top of a pass may be from its planned height, mm; without it, heights are not judged.
+    pub height: Option<f64>,
 }
 
 impl Default for Settings {
@@ -30,6 +32,7 @@ impl Default for Settings {
             efficiency: 1.0,
             hottest: None,
             stop: 60.0,
+            height: None,
         }
     }
 }
@@ -43,6 +46,7 @@ impl Settings {
             ("the efficiency of the arc", self.efficiency, 0.01, 1.0, "(fraction of the power)"),
             ("the hottest start", self.hottest.unwrap_or(100.0), 0.0, 3000.0, "°C"),
             ("the shortest stop", self.stop, 0.1, 1e6, "s"),
+            ("the window of the height", self.height.unwrap_or(1.0), 0.01, 100.0, "mm"),
         ];
         match window.chain(rest).find(|(_, value, low, high, _)| !(*low..=*high).contains(value)) {
             Some((name, value, low, high, unit)) => Err(RecordError::OutOfRange { name, value, low, high, unit }),

@@ -37,6 +37,9 @@ pub struct Cell<A = ArmTable> {
     pub torch: Torch,
     /// Frame of the part in that of the robot; on a turn table, with the table at 0°.
     pub part: PartPlace,
+    /// Frame of a scanner in that of the robot; optional.
+    #[serde(default)]
+    pub scanner: Option<ScannerPlace>,
     /// Linear axis on which the robot stands; optional.
     #[serde(default)]
     pub linear_axis: Option<LinearAxis>,
@@ -69,6 +72,16 @@ pub struct PartPlace {
     pub position: [f64; 3],
     /// Turn about the vertical, °.
     pub rotation: f64,
+}
+
+/// Place and orientation of a scanner relative to the foot of the robot.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScannerPlace {
+    /// Its origin, mm.
+    pub position: [f64; 3],
+    /// Turns about z, the new y and the new x, °.
+    pub rotation: [f64; 3],
 }
 
 /// A linear axis (track, carriage) on which the robot stands.
@@ -156,8 +169,8 @@ impl Cell {
             CellError::Text { line, reason: explain(e.message()) }
         })?;
         let arm = cell.arm.clone().table(read).map_err(|wrong| wrong.at(text))?;
-        let Cell { name, description, torch, part, linear_axis, table, home, body, .. } = cell;
-        let cell = Self { name, description, arm, torch, part, linear_axis, table, home, body };
+        let Cell { name, description, torch, part, scanner, linear_axis, table, home, body, .. } = cell;
+        let cell = Self { name, description, arm, torch, part, scanner, linear_axis, table, home, body };
         match cell.first_broken() {
             None => Ok(cell),
             Some((key, value, reason)) => Err(CellError::Value { line: line_of_key(text, key), key, value, reason }),
@@ -183,12 +196,38 @@ impl Cell {
         Frame { position: self.torch.position.into(), rotation: DQuat::from_euler(EulerRot::ZYX, z, y, x) }
     }
 
+    /// The frame of the scanner in that of the part, if the cell has a scanner: points that it sees, where they lie on the part.
+    ///
+    /// ```
+    /// use bead_robot::{Cell, ScannerPlace};
+    /// use glam::DVec3;
+    ///
+    /// // A scanner above the part that looks down at it.
+    /// let mut cell = Cell::built_in("ur10e")?;
+    /// let [x, y, z] = cell.part.position;
+    /// cell.scanner = Some(ScannerPlace { position: [x, y, z + 400.0], rotation: [cell.part.rotation, 0.0, 180.0] });
+    /// let seen = cell.part_from_scanner().map(|frame| frame.apply(DVec3::new(10.0, 20.0, 390.0)));
+    /// assert!(seen.is_some_and(|seen| seen.distance(DVec3::new(10.0, -20.0, 10.0)) < 1e-9));
+    /// # Ok::<(), bead_robot::CellError>(())
+    /// ```
+    pub fn part_from_scanner(&self) -> Option<Frame> {
+        let ScannerPlace { position, rotation } = self.scanner?;
+        let [z, y, x] = rotation.map(f64::to_radians);
+        let turn = DQuat::from_euler(EulerRot::ZYX, z, y, x);
+        let base_from_scanner = Frame { position: position.into(), rotation: turn };
+        Some(self.part.base_from_part().inverse().then(&base_from_scanner))
+    }
+
     fn first_broken(&self) -> Option<(&'static str, String, String)> {
         let mut ranges = self.arm.ranges();
         ranges.push(("part.rotation", self.part.rotation, -360.0, 360.0, "°"));
         ranges.extend(self.torch.position.map(|v| ("torch.position", v, -5e3, 5e3, "mm")));
         ranges.extend(self.torch.rotation.map(|v| ("torch.rotation", v, -360.0, 360.0, "°")));
         ranges.extend(self.part.position.map(|v| ("part.position", v, -1e5, 1e5, "mm")));
+        if let Some(scanner) = &self.scanner {
+            ranges.extend(scanner.position.map(|v| ("scanner.position", v, -1e5, 1e5, "mm")));
+            ranges.extend(scanner.rotation.map(|v| ("scanner.rotation", v, -360.0, 360.0, "°")));
+        }
         if let Some(axis) = &self.linear_axis {
             ranges.extend(axis.direction.map(|v| ("linear_axis.direction", v, -1e3, 1e3, "(of any length)")));
             ranges.extend(axis.limits.map(|v| ("linear_axis.limits", v, -1e5, 1e5, "mm")));

@@ -48,7 +48,7 @@ mod walk;
 pub use arm::{Arm, Branch, Frame, Joints, Margins};
 pub use arm_table::{ArmTable, OpwTable, Shape};
 pub use body::{Body, Fixture, Solid};
-pub use cell::{Cell, LinearAxis, PartPlace, Table};
+pub use cell::{Cell, LinearAxis, PartPlace, ScannerPlace, Table};
 pub use chain::{Chain, ChainError};
 pub use error::CellError;
 pub use external::{External, external_axes};

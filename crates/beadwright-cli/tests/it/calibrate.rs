@@ -105,3 +105,70 @@ fn a_cell_takes_what_was_measured_and_keeps_its_comments() {
     assert!(!refused.status.success() && said.contains("the frame is tilted by 8.0°"), "{said}");
     assert_eq!(fs::read_to_string(at.join("mine.toml")).unwrap(), after);
 }
+
+/// A table that turns about x 1000, y 50 mm, clockwise as its angle grows; a tilting axis of a positioner; a scanner that looks down.
+#[test]
+fn axes_and_scanner_are_written_where_they_belong() {
+    let folder = TempDir::new().unwrap();
+    let at = folder.path();
+    let points = |centre: [f64; 3], of: fn(f64) -> [f64; 3]| -> String {
+        let row = |angle: f64| {
+            let [x, y, z] = of(angle.to_radians());
+            format!("{angle},{},{},{}\n", centre[0] + x, centre[1] + y, centre[2] + z)
+        };
+        "angle,x,y,z\n".to_owned() + &[0.0, 40.0, 90.0, 150.0].map(row).concat()
+    };
+    let cell = concat!(env!("CARGO_MANIFEST_DIR"), "/../robot/cells/kuka-kr20-r1810.toml");
+    let before = fs::read_to_string(cell).unwrap();
+    fs::write(at.join("table.csv"), points([1000.0, 50.0, 300.0], |a| [120.0 * a.cos(), -120.0 * a.sin(), 0.0]))
+        .unwrap();
+    fs::write(at.join("none.toml"), &before).unwrap();
+    let fails = |arguments: &[&str]| {
+        let output = run(at, &[&["calibrate"], arguments].concat());
+        assert!(!output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let said = fails(&["axis", "table.csv", "--write", "none.toml"]);
+    assert!(said.contains("none.toml: the cell has no turn table"), "{said}");
+    let with_table = before.clone() + "\n[table]\naxis = [0, 0]   # measured\ndirection = 1\nlimits = [-180, 180]\n";
+    fs::write(at.join("mine.toml"), &with_table).unwrap();
+    json(at, &["axis", "table.csv", "--write", "mine.toml"]);
+    let text = fs::read_to_string(at.join("mine.toml")).unwrap();
+    let table = Cell::parse(&text).unwrap().table.unwrap();
+    near(&serde_json::json!(table.axis), &[1000.0, 50.0], 1e-3);
+    assert!(table.direction == -1 && text.contains("# measured"), "{text}");
+
+    fs::write(at.join("tilt.csv"), points([10.0, 0.0, -150.0], |a| [0.0, 80.0 * a.cos(), 80.0 * a.sin()])).unwrap();
+    let axes = "axes = [\n  { direction = [1, 0, 0], limits = [-90, 90], speed = 60 },\n  { direction = [0, 0, 1], limits = [-720, 720], speed = 120 },\n]\n";
+    let positioner = format!("inherits = \"cmt-steel-robots\"\n[program.positioner]\nturning = \"index\"\n{axes}");
+    fs::write(at.join("profile.toml"), &positioner).unwrap();
+    let said = fails(&["axis", "tilt.csv", "--write", "mine.toml"]);
+    assert!(said.contains("the axis leans by 90.0°"), "{said}");
+    json(at, &["axis", "tilt.csv", "--write", "profile.toml"]);
+    json(at, &["axis", "table.csv", "--axis", "2", "--write", "profile.toml"]);
+    let text = fs::read_to_string(at.join("profile.toml")).unwrap();
+    for wanted in [
+        "direction = [1.000000, 0.000000, 0.000000]",
+        "through = [10.000, 0.000, -150.000]",
+        "direction = [0.000000, 0.000000, -1.000000]",
+        "through = [1000.000, 50.000, 300.000]",
+        "limits = [-720, 720], speed = 120",
+    ] {
+        assert!(text.contains(wanted), "{wanted}: {text}");
+    }
+    fs::write(
+        at.join("machine.toml"),
+        "inherits = \"cmt-steel-robots\"\n[program.positioner]\nmachine = \"kuka-dkp-400\"\n",
+    )
+    .unwrap();
+    let said = fails(&["axis", "tilt.csv", "--write", "machine.toml"]);
+    assert!(said.contains("has no axis 1") && said.contains("profile positioner NAME"), "{said}");
+
+    let targets =
+        "sx,sy,sz,x,y,z\n0,0,390,900,100,410\n100,0,390,1000,100,410\n0,100,390,900,0,410\n0,0,290,900,100,510\n";
+    fs::write(at.join("targets.csv"), targets).unwrap();
+    json(at, &["scanner", "targets.csv", "--write", "mine.toml"]);
+    let cell = Cell::parse(&fs::read_to_string(at.join("mine.toml")).unwrap()).unwrap();
+    near(&serde_json::json!(cell.scanner.unwrap().position), &[900.0, 100.0, 800.0], 1e-3);
+    near(&serde_json::json!(cell.scanner.unwrap().rotation.map(f64::abs)), &[0.0, 0.0, 180.0], 1e-3);
+}

@@ -66,6 +66,47 @@ fn a_scan_becomes_the_programs_that_follow() {
     assert!(value["layers"].as_u64() == Some(30) && value["clipped"].as_u64() < Some(5), "{again}");
 }
 
+/// The same scan in the coordinates of the scanner, which the cell places, leads to the same programs.
+#[test]
+fn a_scan_in_the_scanners_coordinates_is_moved_to_the_part() {
+    let folder = wall();
+    let at = folder.path();
+    let adapt = |more: &[&str]| {
+        let arguments =
+            [&["adapt", "plan/plan.json", "--after-layer", "20", "-o", "next", "--json"][..], more].concat();
+        ok(at, &arguments)
+    };
+    let as_is = adapt(&["--scan", "scan.csv"]);
+    ok(at, &["reach", "--show", "kuka-kr20-r1810"]);
+    let mut cell = ok(at, &["reach", "--show", "kuka-kr20-r1810"]);
+    let said = {
+        fs::write(at.join("cell.toml"), &cell).unwrap();
+        refused(
+            at,
+            &["adapt", "plan/plan.json", "--scan", "scan.csv", "--after-layer", "20", "--scanner", "cell.toml"],
+            1,
+        )
+    };
+    assert!(said.contains("the cell has no [scanner]"), "{said}");
+    let part = beadwright::robot::Cell::parse(&cell).unwrap().part;
+    let [x, y, z] = part.position;
+    // Above the part, looking down: its y and z point the other way.
+    cell += &format!("\n[scanner]\nposition = [{x}, {y}, {}]\nrotation = [{}, 0, 180]\n", z + 400.0, part.rotation);
+    fs::write(at.join("cell.toml"), cell).unwrap();
+    let scan = fs::read_to_string(at.join("scan.csv")).unwrap();
+    let row = |line: &str| match line.split(',').map(str::parse::<f64>).collect::<Result<Vec<_>, _>>() {
+        Ok(p) => format!("{},{},{}\n", p[0], -p[1], 400.0 - p[2]),
+        Err(_) => format!("{line}\n"),
+    };
+    fs::write(at.join("seen.csv"), scan.lines().map(row).collect::<String>()).unwrap();
+    let moved = adapt(&["--scan", "seen.csv", "--scanner", "cell.toml"]);
+    let value = |said: &str| -> serde_json::Value { serde_json::from_str(said).unwrap() };
+    let (a, b) = (value(&as_is), value(&moved));
+    assert_eq!(a["layers"], b["layers"]);
+    let mean = |of: &serde_json::Value| of["error"]["mean"].as_f64().unwrap_or_else(|| panic!("{of}"));
+    assert!((mean(&a) - mean(&b)).abs() < 1e-6, "{a} {b}");
+}
+
 #[test]
 fn scans_and_plans_that_do_not_fit_are_reported() {
     let folder = wall();

@@ -153,3 +153,113 @@ fn a_trial_is_fitted_by_what_was_measured_instead_of_what_was_set() {
     let truth = 3.0 * (30.0_f64 / 6.0 / 3.0).sqrt();
     assert!((said["width_mm"]["value"].as_f64().unwrap() / truth - 1.0).abs() < 0.01, "{said} {truth}");
 }
+
+/// A line of a sheet with what was measured in place of its empty cells.
+fn filled(sheet: &str, measured: impl Fn(&[f64]) -> Vec<String>) -> String {
+    let fill = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let set: Vec<f64> = cells.iter().map_while(|cell| cell.parse().ok()).collect();
+        let own = if cells[0].parse::<usize>().is_ok() { measured(&set[3..]) } else { Vec::new() };
+        let cell = |(k, cell): (usize, &&str)| {
+            k.checked_sub(set.len()).and_then(|k| own.get(k)).cloned().unwrap_or((*cell).to_owned())
+        };
+        cells.iter().enumerate().map(cell).collect::<Vec<_>>().join(",") + "\n"
+    };
+    sheet.lines().map(fill).collect()
+}
+
+/// A cell whose hump vanishes with 1.5 times the power at the start, and whose crater becomes shallower the longer it is filled: both
+/// settings are found, and what is left of the crater.
+#[test]
+fn starts_and_ends_are_learnt_from_their_trials() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let trial = ["bead", "trial", "-p", "cmt-steel-robots", "--shape", "ends", "--set", "start_stop.lead_in_length=8"];
+    let vary =
+        ["--vary", "lead_in_power=1..2", "--vary", "crater_fill_time=0.2..1", "--repeats", "2", "--plate", "600x500"];
+    let said = ok(at, &[&trial[..], &vary].concat());
+    assert!(
+        said.contains("18 trials") && said.contains("bead fit trial/sheet.csv -p PROFILE --to FILE.toml"),
+        "{said}"
+    );
+    let sheet = fs::read_to_string(at.join("trial/sheet.csv")).unwrap();
+    let measured = |set: &[f64]| {
+        let off = 0.03 * noise((100.0 * (set[0] + set[1])) as usize);
+        let (hump, crater) = (1.2 * (1.5 - set[0]) + off, 1.3 - 0.9 * set[1] - off);
+        [5.6, 2.2, hump, 9.0 + off, crater, 14.0].iter().map(|own| format!("{own:.3}")).collect()
+    };
+    fs::write(at.join("sheet.csv"), filled(&sheet, measured)).unwrap();
+    let fit = ["bead", "fit", "sheet.csv", "-p", "cmt-steel-robots", "--to", "mine.toml"];
+    let learnt: serde_json::Value = serde_json::from_str(&ok(at, &[&fit[..], &["--json"]].concat())).unwrap();
+    let lesson = |key: &str| {
+        let lessons = learnt["lessons"].as_array().unwrap();
+        let lesson = lessons.iter().find(|lesson| lesson["key"] == key).unwrap_or_else(|| panic!("{key}: {learnt}"));
+        lesson["after"].as_f64().unwrap()
+    };
+    for (key, truth, within) in [
+        ("start_stop.lead_in_power", 1.5, 0.05),
+        ("start_stop.crater_fill_time", 1.0, 1e-6),
+        ("start_stop.hump_height", 0.0, 0.05),
+        ("start_stop.hump_length", 9.0, 0.05),
+        ("start_stop.crater_depth", 0.4, 0.05),
+        ("start_stop.crater_length", 14.0, 1e-6),
+    ] {
+        assert!((lesson(key) - truth).abs() <= within, "{key}: {} for {truth}", lesson(key));
+    }
+    let mine = fs::read_to_string(at.join("mine.toml")).unwrap();
+    assert!(mine.contains(&format!("crater_depth = {:.3}", lesson("start_stop.crater_depth"))), "{mine}");
+    ok(at, &["profile", "check", "mine.toml"]);
+    let said = ok(at, &fit[..5]);
+    assert!(said.contains("least hump and crater") && said.contains("start_stop.lead_in_power"), "{said}");
+    assert!(refused(at, &["bead", "fit", "sheet.csv", "--to", "mine.toml"], 1).contains("(-p)"));
+    let said = refused(at, &["bead", "fit", "trial/sheet.csv"], 1);
+    assert!(said.contains("no trial has both hump height and crater depth yet"), "{said}");
+}
+
+#[test]
+fn corners_and_weaves_are_fitted_as_their_sheets_come() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    ok(
+        at,
+        &["bead", "trial", "-p", "cmt-steel-robots", "--shape", "corner", "--vary", "angle=30..150", "--repeats", "2"],
+    );
+    let sheet = fs::read_to_string(at.join("trial/sheet.csv")).unwrap();
+    let excess = |set: &[f64]| [2.0 + 0.9 - set[0] / 200.0, 2.0, 3.0].iter().map(|own| format!("{own:.2}")).collect();
+    fs::write(at.join("corners.csv"), filled(&sheet, excess)).unwrap();
+    let said = ok(at, &["bead", "fit", "corners.csv"]);
+    assert!(said.contains("0.75 ± 0.00 mm") && said.contains("0.15 ± 0.00 mm"), "{said}");
+    assert!(said.contains("No key of a profile changes the metal of corners"), "{said}");
+    assert!(refused(at, &["bead", "fit", "corners.csv", "--to", "mine.toml"], 1).contains("leave out --to"));
+
+    let weave = ["--set", "weave.length=4", "--set", "weave.amplitude=2"];
+    let vary = [
+        "--vary",
+        "weave_amplitude=1.5..3.5",
+        "--vary",
+        "deposition_speed=5..8",
+        "--post",
+        "fanuc",
+        "-o",
+        "woven",
+        "--plate",
+        "600x500",
+    ];
+    ok(at, &[&["bead", "trial", "-p", "cmt-steel-robots"][..], &weave, &vary].concat());
+    let sheet = fs::read_to_string(at.join("woven/sheet.csv")).unwrap();
+    // 60 mm³/s of metal in a bead that is wider by the swing.
+    let size = |set: &[f64]| {
+        let width = 4.0 + set[0];
+        [width, 1.5 * 60.0 / set[1] / width].iter().map(|own| format!("{own:.4}")).collect()
+    };
+    fs::write(at.join("woven.csv"), filled(&sheet, size)).unwrap();
+    fs::write(at.join("base.toml"), "inherits = \"cmt-steel-robots\"\n[weave]\nlength = 4.0\namplitude = 2.0\n")
+        .unwrap();
+    let want =
+        ["bead", "fit", "woven.csv", "--want", "6.5x1.45", "--tolerance", "2", "-p", "base.toml", "--to", "wide.toml"];
+    ok(at, &want);
+    let wide = fs::read_to_string(at.join("wide.toml")).unwrap();
+    let amplitude: f64 = wide.lines().find_map(|line| line.strip_prefix("amplitude = ")).unwrap().parse().unwrap();
+    assert!((4.0 + amplitude - 6.5).abs() < 0.2, "{wide}");
+    ok(at, &["profile", "check", "wide.toml"]);
+}

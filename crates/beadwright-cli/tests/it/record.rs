@@ -165,6 +165,75 @@ fn opened(at: &Path, record: &serde_json::Value) {
     }
 }
 
+/// A wall with a bump between x 10 and 30 mm on its layer 20: the record has it at its place, and in its hashes.
+#[test]
+fn a_scan_of_a_layer_belongs_to_the_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    ok(at, &["example", "wall"]);
+    ok(
+        at,
+        &[
+            "plan",
+            "wall.stl",
+            "-p",
+            "cmt-steel-abb",
+            "--no-deposit",
+            "-o",
+            "out",
+            "--set",
+            "process.current=150",
+            "--set",
+            "process.voltage=18.5",
+        ],
+    );
+    let plan: serde_json::Value = serde_json::from_slice(&fs::read(at.join("out/plan.json")).unwrap()).unwrap();
+    let delay = plan["profile"]["process"]["arc_start_delay"].as_f64().unwrap();
+    let passes = times(at, [delay, 0.0]);
+    let feed = plan["profile"]["process"]["wire_feed_speed"].as_f64().unwrap();
+    fs::write(at.join("power.csv"), power(&passes, feed, usize::MAX)).unwrap();
+    let z = plan["layers"][19]["z"].as_f64().unwrap();
+    let point = |i: i32| {
+        let (x, y) = (f64::from(i / 9) * 0.5 - 59.0, f64::from(i % 9) * 0.5 - 2.0);
+        // Of the left end, the scanner saw nothing.
+        let seen = x > -40.0;
+        let bump = if (10.0..=30.0).contains(&x) { 1.5 } else { 0.1 };
+        if seen { format!("{x},{y},{}\n", z + bump) } else { String::new() }
+    };
+    fs::write(at.join("scan.csv"), "x,y,z\n".to_owned() + &(0..237 * 9).map(point).collect::<String>()).unwrap();
+    let record = ["record", "out/plan.json", "--source", "power.csv", "--scan", "scan.csv"];
+    let with_layer = [&record[..], &["--after-layer", "20", "--height", "0.7"]].concat();
+    let said = ok(at, &with_layer);
+    assert!(said.contains("1 pass was scanned") && said.contains("mm higher than planned"), "{said}");
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(at.join("record/record.json")).unwrap()).unwrap();
+    let found: Vec<&serde_json::Value> =
+        json["findings"].as_array().unwrap().iter().filter(|finding| finding["kind"] == "height").collect();
+    assert_eq!(found.len(), 1, "{}", json["findings"]);
+    let mut ends = [0, 1].map(|k| found[0]["place"][k]["at"][0].as_f64().unwrap());
+    ends.sort_by(f64::total_cmp);
+    assert!((ends[0] - 10.0).abs() < 4.0 && (ends[1] - 30.0).abs() < 4.0, "{ends:?}");
+    let rows = json["passes"].as_array().unwrap();
+    let scanned: Vec<&serde_json::Value> =
+        rows.iter().map(|row| &row["pass"]).filter(|row| !row["off"].is_null()).collect();
+    assert!(scanned.len() == 1 && scanned[0]["layer"] == 20 && scanned[0]["findings"] == 1, "{scanned:?}");
+    let number = |of: &serde_json::Value| of.as_f64().unwrap();
+    assert!(
+        (number(&scanned[0]["off"]["max"]) - number(&scanned[0]["off"]["min"]) - 1.4).abs() < 0.3,
+        "{}",
+        scanned[0]
+    );
+    assert!((number(&scanned[0]["height"][0]) - z).abs() < 0.3, "{}", scanned[0]);
+    let page = fs::read_to_string(at.join("record/record.html")).unwrap();
+    assert!(page.contains("Height of each pass where it was scanned") && page.contains("higher than planned"));
+    ok(at, &["record", "--verify", "record", "--scan", "scan.csv"]);
+    fs::write(at.join("scan.csv"), "x,y,z\n0,0,1\n").unwrap();
+    let said = crate::common::beadwright(at, &["record", "--verify", "record", "--scan", "scan.csv", "--json"]).stdout;
+    let said: serde_json::Value = serde_json::from_slice(&said).unwrap();
+    assert_eq!(said["changed"], serde_json::json!(["scan.csv was changed"]));
+    assert!(refused(at, &record, 1).contains("give --after-layer with each --scan"));
+    assert!(refused(at, &with_layer, 1).contains("scan.csv"));
+}
+
 #[test]
 fn what_cannot_be_joined_is_refused_with_its_place() {
     let folder = tempfile::tempdir().unwrap();

@@ -10,7 +10,7 @@ use super::area::{core, near};
 use super::surface::{Spread, Surface};
 use crate::deposit::Nominal;
 use crate::layer::Layer;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
@@ -41,6 +41,8 @@ pub struct Seen {
     pub core: Vec<usize>,
     /// Predicted height of each point of the grid above the layer's planned top, mm; `None` where there is no metal.
     pub predicted: Vec<Option<f64>>,
+    /// Where it was measured: the place (mm), and the median of measured minus predicted heights there, mm.
+    pub measured: Vec<(DVec2, f64)>,
     /// Measured minus predicted heights inside the outline without its rim, mm.
     pub error: Spread,
     /// Points of the scan that were compared.
@@ -138,7 +140,10 @@ pub fn see(planned: &[Layer], number: usize, points: &[DVec3], nominal: Nominal)
     let (errors, covered) = filled(&surface, &cells, &core, &predicted, nominal.bead.width);
     surface.measure(number, layer, &errors);
     let error = surface.spread(&core);
-    Ok(Seen { surface, core, predicted, error, points: inside, covered })
+    let grid = surface.grid();
+    let place = |cell: &Cell| (grid.place(cell.at % grid.columns, cell.at / grid.columns), cell.error);
+    let measured = cells.iter().map(place).collect();
+    Ok(Seen { surface, core, predicted, measured, error, points: inside, covered })
 }
 
 /// Predicted height above the layer's top for each point with metal, mm, and the points at which heights are compared.

@@ -47,7 +47,7 @@ fn then<'a>(
 }
 
 fn as_welded<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
-    let ends = weld::lit_ends(&profile.start_stop, layer.lit);
+    let ends = weld::ends_of(layer, &profile.start_stop);
     if !ends.changes_passes() {
         return Cow::Borrowed(layer);
     }

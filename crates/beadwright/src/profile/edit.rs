@@ -4,7 +4,7 @@ use super::{Profile, ProfileError};
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 /// The text of a profile with one value set, such as `45` for `fill.raster_angle`; a value that is not TOML is treated as
-/// text. The only check is that the key can be placed there; [`Profile::parse`] checks the rest.
+/// text. In a list, the place of an element, from 0, is a part of the key: `program.positioner.axes.0.speed`. The only check is that the key can be placed there; [`Profile::parse`] checks the rest.
 ///
 /// ```
 /// use beadwright::profile::edit::with_value;
@@ -22,6 +22,12 @@ pub fn with_value(text: &str, key: &str, value: &str) -> Result<String, ProfileE
     let parts: Vec<&str> = key.trim().split('.').collect();
     let mut item = document.as_item_mut();
     for (i, part) in parts.iter().enumerate() {
+        if let Ok(index) = part.parse::<usize>() {
+            let is_list = item.is_array() || item.is_array_of_tables();
+            let element = if is_list { item.get_mut(index) } else { None };
+            item = element.ok_or_else(|| ProfileError::Key { key: key.to_owned() })?;
+            continue;
+        }
         let table = item.as_table_like_mut().ok_or_else(|| ProfileError::Key { key: key.to_owned() })?;
         // A section whose keys all have defaults may be missing.
         let missing = if i + 1 < parts.len() { Item::Table(Table::new()) } else { Item::None };

@@ -112,7 +112,13 @@ fn contradiction(p: &Profile) -> Option<Broken> {
     if let Some(post) = p.posts.iter().find(|post| !own::is_folder(post) && dialect::find(post).is_none()) {
         return Some(Broken::text("posts", post, format!("the posts are {}.", dialect::names().join(", "))));
     }
-    let sections = p.process.broken().or_else(|| p.safety.broken()).or_else(|| p.program.broken());
+    let sections = p
+        .process
+        .broken()
+        .or_else(|| p.start_stop.broken())
+        .or_else(|| p.weave.as_ref()?.broken())
+        .or_else(|| p.safety.broken())
+        .or_else(|| p.program.broken());
     sections.or_else(|| p.dialects.iter().find_map(|section| section.broken(&p.program)))
 }
 

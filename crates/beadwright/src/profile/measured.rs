@@ -23,11 +23,14 @@ pub(super) fn law(text: &str, profile: &Profile) -> Result<Law, String> {
         "wire_feed" | "wire_feed_speed" => Some(process.wire_feed_speed),
         "current" => process.current,
         "voltage" => process.voltage,
+        "weave_length" => Some(profile.weave.as_ref()?.length),
+        "weave_amplitude" => Some(profile.weave.as_ref()?.amplitude),
+        "weave_dwell" => Some(profile.weave.as_ref()?.dwell),
         _ => None,
     };
     let own = library.inputs.iter().map(|input| {
         value(&input.name)
-            .ok_or_else(|| format!("the library depends on {}, which [process] does not give.", input.name))
+            .ok_or_else(|| format!("the library depends on {}, which the profile does not give.", input.name))
     });
     let own: Vec<f64> = own.collect::<Result<_, _>>()?;
     let nominal = library.predict(&own).map_err(|error| error.to_string())?.width.value;

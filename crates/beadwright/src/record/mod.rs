@@ -5,12 +5,14 @@
 //! | file | what it holds |
 //! | --- | --- |
 //! | `planned` | layers and profile as planned passes with their times; the limits of a profile |
+//! | `heights` | a scan of a layer as heights along its passes |
 //! | `totals` | hours, wire, gas and cost, planned and recorded |
 //! | `page` | `record.html` |
 //! | `table` (feature `parquet`) | `record.parquet`, a row for each pass |
 //! | `sealed` | `record.json` with its chain of hashes, and whether it still holds |
 //! | `learnt` | what records say about the values of a profile |
 
+mod heights;
 mod learnt;
 mod page;
 mod planned;
@@ -20,6 +22,7 @@ mod table;
 mod totals;
 
 pub use bead_record::*;
+pub use heights::heights;
 pub use learnt::{AsWelded, Estimate, Learnt, Lesson, as_welded};
 pub use planned::{planned, settings};
 pub use sealed::{Broken, Sealed, other_inputs, verify};

@@ -147,6 +147,7 @@ fn plots(sheet: &mut Sheet, part: &Part<'_>) {
     }
     plot("Heat input of each pass", "J/mm", &|row| row.heat[0], &|row| row.heat[1]);
     plot("Temperature before each pass", "°C", &|row| row.before[0], &|row| row.before[1]);
+    plot("Height of each pass where it was scanned", "mm", &|row| row.height[0], &|row| row.height[1]);
     plot("Wait before each pass", "s", &|row| row.wait[0], &|row| row.wait[1]);
 }
 
@@ -193,6 +194,9 @@ fn passes(sheet: &mut Sheet, part: &Part<'_>) {
             number(mean(Quantity::Voltage), 1),
             number(row.heat[1], 0),
             number(row.before[1], 0),
+            number(row.off.map(|off| off.mean), 2),
+            number(row.off.map(|off| off.min), 2),
+            number(row.off.map(|off| off.max), 2),
             row.findings.to_string(),
             row.notes.join("; "),
         ])
@@ -211,6 +215,9 @@ fn passes(sheet: &mut Sheet, part: &Part<'_>) {
         "voltage V",
         "heat input J/mm",
         "before °C",
+        "height off mm",
+        "least",
+        "greatest",
         "findings",
         "notes",
     ];

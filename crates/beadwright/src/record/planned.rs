@@ -31,7 +31,8 @@ fn pass(pieces: &[Piece], profile: &Profile) -> PlannedPass {
         |piece: &Piece, at, time| Place { at, time, feed: piece.feed * process.wire_feed_speed, speed: piece.speed };
     let end = last.start + last.seconds;
     let path = pieces.iter().map(|piece| place(piece, piece.from, piece.start)).chain([place(last, last.to, end)]);
-    let crater = if first.kind == PassKind::Spot { 0.0 } else { profile.start_stop.crater_fill_time };
+    let ends = profile.start_stop.at_layer(first.layer - 1);
+    let crater = if first.kind == PassKind::Spot { 0.0 } else { ends.crater_fill_time };
     PlannedPass {
         layer: first.layer,
         pass: first.pass,
@@ -49,6 +50,7 @@ pub fn settings(profile: &Profile) -> Settings {
     let usual = Settings::default();
     Settings {
         efficiency: profile.heat.as_ref().map_or(usual.efficiency, |heat| heat.arc_efficiency),
+        height: Some(profile.layers.height / 2.0),
         hottest: profile.interpass.as_ref().map(|limits| limits.max_temperature),
         ..usual
     }

@@ -55,6 +55,11 @@ fn numbers() -> Vec<(String, Number)> {
         add(format!("temperature before{end} (°C)"), Box::new(move |row| row.before[which]));
     }
     add("temperature peak (°C)".into(), Box::new(|row| row.peak));
+    add("height planned (mm)".into(), Box::new(|row| row.height[0]));
+    add("height (mm)".into(), Box::new(|row| row.height[1]));
+    add("height off least (mm)".into(), Box::new(|row| row.off.map(|off| off.min)));
+    add("height off greatest (mm)".into(), Box::new(|row| row.off.map(|off| off.max)));
+    add("height off deviation (mm)".into(), Box::new(|row| row.off.map(|off| off.deviation)));
     for quantity in Quantity::PLANNED {
         let name = |figure: &str| format!("{} {figure} ({})", quantity.word(), quantity.unit());
         add(name("planned"), Box::new(move |row| row.planned(quantity)));

@@ -82,7 +82,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["welded"],
             &["figures", "finding"],
             &["record"],
-            &["judge"],
+            &["height", "judge"],
             &["join"],
         ],
     ),

@@ -138,7 +138,9 @@ fn ask(profile: &mut Profile, feature: &str) {
     (program.chord_tolerance, program.arcs) = (0.05, true);
     match feature {
         "table" => program.table_side = Some(-90.0),
-        "weave" => profile.weave = Some(Weave { length: 4.0, amplitude: 1.5, dwell: 0.05, file: 1 }),
+        "weave" => {
+            profile.weave = Some(Weave { length: 4.0, amplitude: 1.5, dwell: 0.05, file: 1, layers: Vec::new() })
+        }
         "restart" => program.restart = true,
         "offsets" => program.layer_offsets = true,
         "tilt" => (program.follow_wall, program.travel_angle) = (1.0, 8.0),

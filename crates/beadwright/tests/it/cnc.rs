@@ -139,7 +139,7 @@ fn linuxcnc_runs_what_was_planned() {
             profile.fill.strategy = strategy.parse().unwrap();
             (profile.program.restart, profile.program.layer_offsets) = (way == "restart", way == "offsets");
             let plan = planned(part, &profile);
-            let weave = Weave { length: 4.0, amplitude: 1.5, dwell: 0.0, file: 1 };
+            let weave = Weave { length: 4.0, amplitude: 1.5, dwell: 0.0, file: 1, layers: Vec::new() };
             profile.weave = (way == "weave").then_some(weave);
             println!("{part}, {way}");
             compare(&plan, &profile);

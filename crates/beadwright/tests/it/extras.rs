@@ -32,7 +32,7 @@ fn try_write(post: &str, plan: &Plan, profile: &Profile) -> Result<Files, Dialec
 
 #[test]
 fn the_torch_weaves_where_the_controller_can() {
-    let weave = Weave { length: 4.0, amplitude: 1.5, dwell: 0.1, file: 3 };
+    let weave = Weave { length: 4.0, amplitude: 1.5, dwell: 0.1, file: 3, layers: Vec::new() };
     let check = |post: &str, name: &str, change: fn(&mut Profile), words: &[&str]| {
         let (plan, mut profile) = plan_of(name);
         change(&mut profile);
@@ -84,7 +84,7 @@ fn the_torch_weaves_by_moves_elsewhere() {
             common::read_back(&files.unwrap(), main).unwrap()
         };
         let plain = read(&profile);
-        profile.weave = Some(Weave { length: 4.0, amplitude: 1.5, dwell: 0.05, file: 1 });
+        profile.weave = Some(Weave { length: 4.0, amplitude: 1.5, dwell: 0.05, file: 1, layers: Vec::new() });
         let woven = read(&profile);
         assert_eq!(plain.totals().arc_starts, woven.totals().arc_starts, "{post}");
         let seconds = |program: &ReadProgram| program.layers().iter().flat_map(|l| &l.passes).map(time).sum::<f64>();
@@ -128,7 +128,7 @@ fn the_weave_follows_the_speed_of_each_move() {
         wait: 0.0,
     };
     let layers = vec![Layer { z: 2.0, height: 2.0, passes: vec![pass], ..Layer::default() }];
-    let weave = Weave { length: 4.0, amplitude: 1.5, dwell: 0.1, file: 1 };
+    let weave = Weave { length: 4.0, amplitude: 1.5, dwell: 0.1, file: 1, layers: Vec::new() };
     let mut robots = profile("cmt-steel-robots");
     robots.weave = Some(weave.clone());
     let text = &dialect::write("fanuc", &layers, &robots.job("demo")).unwrap()["DEMO_L001.ls"];

@@ -80,7 +80,7 @@ fn asked() -> Vec<(String, &'static str, Profile)> {
         ("restart", |p| p.program.restart = true),
         ("offsets", |p| p.program.layer_offsets = true),
         ("tilt", |p| (p.program.follow_wall, p.program.travel_angle) = (1.0, 8.0)),
-        ("weave", |p| p.weave = Some(Weave { length: 4.0, amplitude: 1.5, dwell: 0.1, file: 1 })),
+        ("weave", |p| p.weave = Some(Weave { length: 4.0, amplitude: 1.5, dwell: 0.1, file: 1, layers: Vec::new() })),
         ("ends", |p| (p.start_stop.crater_fill_time, p.start_stop.interpass_time) = (0.5, 20.0)),
     ];
     for (what, ask) in ways {
@@ -171,7 +171,7 @@ fn arctech(profile: &mut Profile) {
 }
 
 fn weave(profile: &mut Profile) {
-    profile.weave = Some(Weave { length: 4.0, amplitude: 1.5, dwell: 0.1, file: 1 });
+    profile.weave = Some(Weave { length: 4.0, amplitude: 1.5, dwell: 0.1, file: 1, layers: Vec::new() });
 }
 
 fn offsets(profile: &mut Profile) {

@@ -4,18 +4,26 @@
 use crate::common;
 use beadwright::bead::library::{BeadLibrary, Columns, Layering, Measured, Wish};
 use beadwright::dialect;
+use beadwright::dialect::krl::KrlArc;
+use beadwright::dialect::reading::ReadProgram;
 use beadwright::files::Programs;
+use beadwright::process::StartStop;
 use beadwright::profile::{Profile, edit};
+use beadwright::program::Weave;
 use beadwright::trial::{self, Design, Factor, Layout, Plate, PlatePlan, Series, Shape, points};
 use common::{planned, profile, read_back, with_all_dialects};
 use std::collections::BTreeMap;
 
 fn series(profile: &Profile, factors: &[&str], design: Design, seed: u64) -> Series {
+    series_of(Shape::Bead, profile, factors, design, seed)
+}
+
+fn series_of(shape: Shape, profile: &Profile, factors: &[&str], design: Design, seed: u64) -> Series {
     let factors: Vec<Factor> = factors.iter().map(|text| text.parse().unwrap()).collect();
     let combinations = points(design, &factors, seed).unwrap();
     let plate = Plate { length: 500.0, width: 300.0, margin: 20.0 };
     let layout = Layout { plate, repeats: 1, seed, length: 80.0, gap: 12.0, wait: 45.0, numbers: true };
-    Series::new(factors, &combinations, Shape::Bead, layout, trial::nominal(profile)).unwrap()
+    Series::new(factors, &combinations, shape, layout, trial::nominal(profile)).unwrap()
 }
 
 fn files(plan: &PlatePlan, post: &str) -> BTreeMap<String, String> {
@@ -27,6 +35,22 @@ fn files(plan: &PlatePlan, post: &str) -> BTreeMap<String, String> {
     files
 }
 
+/// Every robot's language, and the main file of a plate's program.
+const POSTS: [(&str, &str); 6] = [
+    ("krl", "TRIAL_1.src"),
+    ("rapid", "trial_1.mod"),
+    ("fanuc", "TRIAL_1.ls"),
+    ("inform", "TRIAL_1.jbi"),
+    ("urscript", "trial_1.script"),
+    ("gcode", "trial_1.ngc"),
+];
+
+fn program(files: &BTreeMap<String, String>, post: &str, main: &str) -> ReadProgram {
+    let main =
+        files.keys().find(|name| name.eq_ignore_ascii_case(main) || name.starts_with("trial_1.") && post == "gcode");
+    read_back(files, main.unwrap_or_else(|| panic!("{post}: {:?}", files.keys()))).unwrap()
+}
+
 /// Each trial is a bead from start to end at its speed, in its place, with the wait before it, in every robot's language.
 #[test]
 fn programs_weld_the_trials_of_the_sheet() {
@@ -34,19 +58,8 @@ fn programs_weld_the_trials_of_the_sheet() {
     let series = series(&profile, &["deposition_speed=5..9"], Design::Factorial(5), 2);
     assert_eq!(series.plates(), 1);
     let plan = PlatePlan::new(&series, 0, &profile);
-    for (post, main) in [
-        ("krl", "TRIAL_1.src"),
-        ("rapid", "trial_1.mod"),
-        ("fanuc", "TRIAL_1.ls"),
-        ("inform", "TRIAL_1.jbi"),
-        ("urscript", "trial_1.script"),
-        ("gcode", "trial_1.ngc"),
-    ] {
-        let files = files(&plan, post);
-        let main = files
-            .keys()
-            .find(|name| name.eq_ignore_ascii_case(main) || name.starts_with("trial_1.") && post == "gcode");
-        let read = read_back(&files, main.unwrap_or_else(|| panic!("{post}: {:?}", files.keys()))).unwrap();
+    for (post, main) in POSTS {
+        let read = program(&files(&plan, post), post, main);
         let passes: Vec<_> = read.layers().into_iter().flat_map(|layer| layer.passes).collect();
         for (trial, pass) in series.trials.iter().zip(&passes) {
             let (from, to) = (trial.paths[0][0], trial.paths[0][1]);
@@ -60,6 +73,126 @@ fn programs_weld_the_trials_of_the_sheet() {
         }
         assert!(read.dwell >= 5.0 * 45.0, "{post}: {} s", read.dwell);
         assert!(read.faults.is_empty(), "{post}: {:?}", read.faults);
+    }
+}
+
+/// Each trial has the hot start, the lead-out and the crater of the sheet, in every robot's language; the numbers have those of the
+/// profile.
+#[test]
+fn programs_weld_the_starts_and_ends_of_the_sheet() {
+    let mut profile = with_all_dialects("cmt-steel-robots");
+    profile.start_stop = StartStop { lead_in_length: 10.0, lead_out_length: 8.0, ..StartStop::default() };
+    let rapid = profile.dialects.rapid.as_mut().unwrap();
+    rapid.speed_step = 0.001;
+    let factors = ["lead_in_power=1.2..1.8", "lead_out_power=0.6..0.9", "crater_fill_time=0.3..1.1"];
+    let series = series_of(Shape::Ends, &profile, &factors, Design::LatinHypercube(5), 4);
+    let plan = PlatePlan::new(&series, 0, &profile);
+    let nominal = profile.process.deposition_speed;
+    for (post, main) in POSTS {
+        let files = files(&plan, post);
+        let read = program(&files, post, main);
+        let passes: Vec<_> = read.layers().into_iter().flat_map(|layer| layer.passes).collect();
+        for (trial, pass) in series.trials.iter().zip(&passes) {
+            let expected = [nominal / trial.values[0], nominal, nominal / trial.values[1]];
+            assert!(
+                pass.speed.len() == 3
+                    && pass.speed.iter().zip(expected).all(|(own, wanted)| (own - wanted).abs() < 0.06),
+                "{post} {}: {:?} {expected:?}",
+                trial.number,
+                pass.speed
+            );
+            assert!((pass.points[0].distance(pass.points[1]) - 10.0).abs() < 0.01, "{post}");
+        }
+        assert!(read.faults.is_empty(), "{post}: {:?}", read.faults);
+        // RAPID's arc instructions fill craters by their seamdata, each module's own.
+        if post == "rapid" {
+            for trial in &series.trials {
+                let text = &files[&format!("trial_1_L{:03}.mod", trial.number)];
+                let seam = text.lines().find(|line| line.contains("seamdata smLayer")).unwrap();
+                assert!(seam.contains(&format!(",{:.3},[", trial.values[2])), "{}: {seam}", trial.number);
+                assert!(text.contains("ArcLEnd") && text.contains(",smLayer,") && !text.contains(",smBead,"), "{text}");
+            }
+            assert!(files[&format!("trial_1_L{:03}.mod", series.trials.len() + 1)].contains(",smBead,"));
+        }
+    }
+    // Elsewhere the torch stands still with the arc on, as long as the sheet says.
+    let crater: f64 = series.trials.iter().map(|trial| trial.values[2]).sum();
+    for (post, main) in POSTS.iter().filter(|(post, _)| *post != "rapid") {
+        let mut without = PlatePlan::new(&series, 0, &profile);
+        without.profile = without_craters(&plan.profile);
+        let [with, without] = [&plan, &without].map(|plan| program(&files(plan, post), post, main).dwell);
+        assert!((with - without - crater).abs() < 0.05, "{post}: {with} {without} {crater}");
+    }
+    let mut without = PlatePlan::new(&series, 0, &profile);
+    without.profile = without_craters(&plan.profile);
+    assert!((plan.metrics().arc_time_s - without.metrics().arc_time_s - crater).abs() < 1e-6);
+}
+
+fn without_craters(profile: &Profile) -> Profile {
+    let mut profile = profile.clone();
+    profile.start_stop.layers.iter_mut().for_each(|row| row.crater_fill_time = None);
+    profile
+}
+
+/// Each trial is woven as the sheet says: by the controller where it weaves, by moves elsewhere.
+#[test]
+fn programs_weave_as_the_sheet_says() {
+    let mut profile = with_all_dialects("cmt-steel-robots");
+    profile.weave = Some(Weave { length: 4.0, amplitude: 1.0, dwell: 0.0, file: 1, layers: Vec::new() });
+    let factors = ["weave_amplitude=1..3", "weave_length=3..6"];
+    let series = series(&profile, &factors, Design::LatinHypercube(4), 5);
+    let plan = PlatePlan::new(&series, 0, &profile);
+    let speed = profile.process.deposition_speed;
+    let of_layer = |files: &BTreeMap<String, String>, number: usize| -> String {
+        let named = |name: &&String| name.contains(&format!("L{number:03}"));
+        files.keys().filter(named).map(|name| files[name].as_str()).collect()
+    };
+    for (post, main) in POSTS.iter().filter(|(post, _)| *post != "inform") {
+        let files = files(&plan, post);
+        let read = program(&files, post, main);
+        assert!(read.faults.is_empty(), "{post}: {:?}", read.faults);
+        let passes: Vec<_> = read.layers().into_iter().flat_map(|layer| layer.passes).collect();
+        for (trial, pass) in series.trials.iter().zip(&passes) {
+            let (amplitude, length) = (trial.values[0], trial.values[1]);
+            match *post {
+                "fanuc" => {
+                    let wanted = format!("Weave Sine[{:.1}Hz,{amplitude:.1}mm", speed / length);
+                    assert!(of_layer(&files, trial.number).contains(&wanted), "{wanted}");
+                }
+                "rapid" => {
+                    let wanted = format!("wv1:=[1,0,{length:.3},{:.3},", 2.0 * amplitude);
+                    assert!(of_layer(&files, trial.number).contains(&wanted), "{wanted}");
+                }
+                _ => {
+                    let y = trial.paths[0][0].y;
+                    let swing = pass.points.iter().map(|p| (p.y - y).abs()).fold(0.0, f64::max);
+                    assert!((swing - amplitude).abs() < 0.01, "{post}: {swing} {amplitude}");
+                    let turns = pass.points.len() - 2;
+                    assert!((turns as f64 - 2.0 * 80.0 / length).abs() <= 1.0, "{post}: {turns} {length}");
+                }
+            }
+        }
+    }
+    // A Yaskawa keeps its weaves in files of the controller: each needs one of its own.
+    let Err(error) = Programs::new(&["inform"], &plan.profile.job("trial_1")) else {
+        panic!("the weave would be lost")
+    };
+    assert!(error.to_string().contains("a file of its own"), "{error}");
+    let series = self::series(&profile, &["weave_file=1,4,9"], Design::Factorial(3), 1);
+    let files = files(&PlatePlan::new(&series, 0, &profile), "inform");
+    for trial in &series.trials {
+        assert!(of_layer(&files, trial.number).contains(&format!("WVON WEV#({})", trial.values[0])), "{files:?}");
+    }
+    // ArcTech has it in its forms.
+    let mut plan = plan;
+    let own = Profile::built_in("cmt-al2319-kuka").unwrap();
+    plan.profile.dialects.krl = own.dialects.krl;
+    plan.profile.dialects.krl.as_mut().unwrap().arc = KrlArc::Arctech;
+    let series = self::series(&profile, &factors, Design::LatinHypercube(4), 5);
+    let files = self::files(&plan, "krl");
+    for trial in &series.trials {
+        let wanted = format!("Length {:.5},Amplitude {:.5}", trial.values[1], trial.values[0]);
+        assert!(of_layer(&files, trial.number).contains(&wanted), "{wanted}: {}", of_layer(&files, trial.number));
     }
 }
 

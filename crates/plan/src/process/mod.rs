@@ -9,7 +9,7 @@ mod torch_shape;
 pub use by_layer::LayerProcess;
 pub use cost::{Cost, Spent};
 pub use spot::{Dot, Spot};
-pub use start_stop::StartStop;
+pub use start_stop::{LayerEnds, StartStop};
 pub use torch_shape::TorchShape;
 
 use crate::limit::{Limit, TINY, limits};

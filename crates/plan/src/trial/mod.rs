@@ -8,15 +8,17 @@
 //! | --- | --- |
 //! | `factor` | process parameters that are varied, and their values |
 //! | `design` | full factorial, Box–Behnken, Latin hypercube |
-//! | `shape` | what is welded with each combination: beads, overlaps, walls, corners |
+//! | `shape` | what is welded with each combination: beads, their ends, overlaps, walls, corners |
 //! | `digits` | numbers as strokes |
 //! | `plate` | where everything lies on the plates, as layers |
 //! | `sheet` | the table to fill in |
+//! | `found` | humps, craters and corners over what was varied |
 //! | `measure` | beads measured in a scan of the plate |
 
 mod design;
 mod digits;
 mod factor;
+mod found;
 mod measure;
 mod plate;
 mod shape;
@@ -24,7 +26,8 @@ mod sheet;
 
 pub use design::{Design, points};
 pub use factor::{Factor, FactorError, Parameter};
+pub use found::{Best, Found, FoundError, Subject};
 pub use measure::{BeadSize, MeasureError, measured};
-pub use plate::{Layout, Nominal, Placed, Plate, PlateError, Series};
+pub use plate::{Layout, Nominal, Placed, Plate, PlateError, Series, Span};
 pub use shape::Shape;
 pub use sheet::{SheetError, TrialWelded, as_measured, csv, filled, plates};

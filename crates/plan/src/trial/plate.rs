@@ -6,7 +6,7 @@ use super::shape::{Stroke, bounds};
 use super::{Factor, Parameter, Shape};
 use crate::layer::Layer;
 use crate::pass::{Along, Pass, PassKind};
-use crate::process::{LayerProcess, Process};
+use crate::process::{LayerEnds, LayerProcess, Process, StartStop};
 use crate::random::Random;
 use glam::DVec2;
 use planar::{Polygon, Ring};
@@ -46,6 +46,10 @@ pub struct Layout {
 pub struct Nominal {
     /// The process.
     pub process: Process,
+    /// How its beads begin and end.
+    pub ends: StartStop,
+    /// How far its torch swings to each side, mm; `None` if it does not weave.
+    pub amplitude: Option<f64>,
     /// Width of a bead, mm.
     pub width: f64,
     /// Layer height, mm.
@@ -103,6 +107,7 @@ impl Series {
         if let Some(strange) = factors.iter().find(|factor| !shape.allows(factor.parameter)) {
             return Err(PlateError::Factor(strange.parameter));
         }
+        nominal.check(&factors)?;
         let mut random = Random::new(layout.seed);
         let mut series = Self { factors, shape, trials: Vec::new(), layout, nominal };
         for block in 0..layout.repeats {
@@ -119,6 +124,7 @@ impl Series {
             let nominal = series.nominal.process.wire_feed_speed;
             return Err(PlateError::Feed { feed: rate * nominal, nominal });
         }
+        series.leave_room_between_leads()?;
         // Blocks begin on plates of their own where each fits on one.
         series.place(true)?;
         if series.plates() > layout.repeats {
@@ -127,7 +133,8 @@ impl Series {
         Ok(series)
     }
 
-    fn value(&self, values: &[f64], parameter: Parameter) -> Option<f64> {
+    /// The value of a parameter among those of a trial, if it is varied.
+    pub fn value(&self, values: &[f64], parameter: Parameter) -> Option<f64> {
         self.factors.iter().zip(values).find(|(factor, _)| factor.parameter == parameter).map(|(_, value)| *value)
     }
 
@@ -144,6 +151,25 @@ impl Series {
         self.nominal.width * feed * self.nominal.process.deposition_speed / speed
     }
 
+    fn leave_room_between_leads(&self) -> Result<(), PlateError> {
+        let length = self.layout.length;
+        let leads = |trial: &Placed| {
+            let own =
+                |parameter| self.value(&trial.values, parameter).or(self.nominal.end(parameter)).unwrap_or_default();
+            own(Parameter::LeadInLength) + own(Parameter::LeadOutLength)
+        };
+        let long = self.trials.iter().map(|trial| (trial.number, leads(trial))).find(|(_, leads)| *leads >= length);
+        long.map_or(Ok(()), |(number, leads)| Err(PlateError::Leads { number, leads, length }))
+    }
+
+    /// How wide a trial may become, mm: hot starts, wider weaves, and beads that flow.
+    fn room(&self, values: &[f64]) -> f64 {
+        let power = self.value(values, Parameter::LeadInPower).unwrap_or(self.nominal.ends.lead_in_power);
+        let usual = self.nominal.amplitude.unwrap_or_default();
+        let swing = self.value(values, Parameter::WeaveAmplitude).unwrap_or(usual) - usual;
+        WIDEST * self.bead(values).max(self.nominal.width) * power + 2.0 * swing.max(0.0)
+    }
+
     fn strokes(&self, values: &[f64]) -> Vec<Stroke> {
         self.shape.strokes(self.layout.length, self.bead(values), |parameter| self.value(values, parameter))
     }
@@ -153,10 +179,10 @@ impl Series {
         let Layout { plate, gap, numbers, .. } = self.layout;
         let nominal = self.nominal.width;
         let room = DVec2::new(plate.length, plate.width) - 2.0 * plate.margin;
+        let widths: Vec<f64> = self.trials.iter().map(|trial| self.room(&trial.values)).collect();
         // The corner of the next trial, and the top of the row so far, from the corner of the room.
         let (mut corner, mut top, mut on, mut block) = (DVec2::ZERO, 0.0_f64, 0, 0);
-        for trial in &mut self.trials {
-            let widest = WIDEST * trial.width.max(nominal);
+        for (trial, widest) in self.trials.iter_mut().zip(widths) {
             let number = if numbers { digits::size(trial.number, nominal) } else { DVec2::ZERO };
             let label = if numbers { number + widest + DVec2::X * gap } else { DVec2::ZERO };
             let (low, high) = bounds(trial.paths.iter().map(Vec::as_slice));
@@ -189,14 +215,12 @@ impl Series {
         self.trials.last().map_or(0, |trial| trial.plate + 1)
     }
 
-    /// The layers of a plate, and the process with a row for each whose wire feed or job differs from the nominal one.
-    pub fn layers(&self, plate: usize) -> (Vec<Layer>, Process) {
-        let (mut layers, mut process) = (Vec::new(), self.nominal.process.clone());
-        process.layers.clear();
+    /// The layers of a plate, and which of them belong to each trial.
+    pub fn layers(&self, plate: usize) -> (Vec<Layer>, Vec<Span<'_>>) {
+        let (mut layers, mut spans) = (Vec::new(), Vec::new());
         let trials = || self.trials.iter().filter(|trial| trial.plate == plate);
         for trial in trials() {
             let (speed, rate) = self.speed_and_feed(&trial.values);
-            let job = self.value(&trial.values, Parameter::Job).map(|job| job as u32);
             let dwell = self.value(&trial.values, Parameter::Dwell).unwrap_or(0.0);
             let from = layers.len() + 1;
             let strokes = self.strokes(&trial.values);
@@ -208,10 +232,7 @@ impl Series {
                 let laid = Laid { level, width: trial.width, pace: speed / rate, wait };
                 layers.push(self.layer(layers.len(), &paths, &laid));
             }
-            if rate != 1.0 || job.is_some() {
-                let deposition_speed = rate * self.nominal.process.deposition_speed;
-                process.layers.push(LayerProcess { from, to: layers.len(), deposition_speed, current: None, job });
-            }
+            spans.push(Span { from, to: layers.len(), trial });
         }
         if self.layout.numbers {
             let numbers = trials().flat_map(|trial| digits::strokes(trial.number, trial.label, self.nominal.width));
@@ -221,7 +242,37 @@ impl Series {
             let laid = Laid { level: 0, width: self.nominal.width, pace, wait };
             layers.push(self.layer(layers.len(), &paths, &laid));
         }
-        (layers, process)
+        (layers, spans)
+    }
+
+    /// A row of `process.layers` for each trial whose wire feed or job differs from the nominal one.
+    pub fn processes(&self, spans: &[Span<'_>]) -> Vec<LayerProcess> {
+        let row = |&Span { from, to, trial }: &Span<'_>| {
+            let (_, rate) = self.speed_and_feed(&trial.values);
+            let job = self.value(&trial.values, Parameter::Job).map(|job| job as u32);
+            let deposition_speed = rate * self.nominal.process.deposition_speed;
+            (rate != 1.0 || job.is_some()).then_some(LayerProcess { from, to, deposition_speed, current: None, job })
+        };
+        spans.iter().filter_map(row).collect()
+    }
+
+    /// A row of `start_stop.layers` for each trial, if its start or end is varied.
+    pub fn ends(&self, spans: &[Span<'_>]) -> Vec<LayerEnds> {
+        let row = |&Span { from, to, trial }: &Span<'_>| {
+            let value = |parameter| self.value(&trial.values, parameter);
+            let usual = LayerEnds { from, to, ..LayerEnds::default() };
+            let row = LayerEnds {
+                lead_in_length: value(Parameter::LeadInLength),
+                lead_in_power: value(Parameter::LeadInPower),
+                lead_out_length: value(Parameter::LeadOutLength),
+                lead_out_power: value(Parameter::LeadOutPower),
+                crater_fill_time: value(Parameter::CraterFillTime),
+                crater_power: value(Parameter::CraterPower),
+                ..usual.clone()
+            };
+            (row != usual).then_some(row)
+        };
+        spans.iter().filter_map(row).collect()
     }
 
     fn layer(&self, index: usize, paths: &[&[DVec2]], laid: &Laid) -> Layer {
@@ -246,6 +297,57 @@ impl Series {
             islands,
             ..Layer::default()
         }
+    }
+}
+
+/// Layers of a trial, from 1.
+#[derive(Debug, Clone, Copy)]
+pub struct Span<'a> {
+    /// The first.
+    pub from: usize,
+    /// The last.
+    pub to: usize,
+    /// The trial.
+    pub trial: &'a Placed,
+}
+
+/// A parameter that changes nothing by itself, its partner, and the value of the partner with which it is idle.
+const PAIRS: [(Parameter, Parameter, f64); 5] = [
+    (Parameter::LeadInLength, Parameter::LeadInPower, 1.0),
+    (Parameter::LeadInPower, Parameter::LeadInLength, 0.0),
+    (Parameter::LeadOutLength, Parameter::LeadOutPower, 1.0),
+    (Parameter::LeadOutPower, Parameter::LeadOutLength, 0.0),
+    (Parameter::CraterPower, Parameter::CraterFillTime, 0.0),
+];
+
+impl Nominal {
+    /// Refuses factors that would change nothing.
+    fn check(&self, factors: &[Factor]) -> Result<(), PlateError> {
+        let varied = |parameter: Parameter| factors.iter().any(|factor| factor.parameter == parameter);
+        let weaves = |parameter: &Parameter| parameter.key().is_some_and(|key| key.starts_with("weave."));
+        if let Some(weave) = Parameter::all().find(|own| weaves(own) && varied(*own) && self.amplitude.is_none()) {
+            return Err(PlateError::NoWeave(weave));
+        }
+        let is_idle = |(own, partner, idle): &&(Parameter, Parameter, f64)| {
+            varied(*own) && !varied(*partner) && self.end(*partner) == Some(*idle)
+        };
+        match PAIRS.iter().find(is_idle) {
+            Some(&(own, partner, idle)) => Err(PlateError::Idle { own, partner, idle }),
+            None => Ok(()),
+        }
+    }
+
+    /// The value of a parameter of starts and ends; `None` for any other.
+    pub fn end(&self, parameter: Parameter) -> Option<f64> {
+        Some(match parameter {
+            Parameter::LeadInLength => self.ends.lead_in_length,
+            Parameter::LeadInPower => self.ends.lead_in_power,
+            Parameter::LeadOutLength => self.ends.lead_out_length,
+            Parameter::LeadOutPower => self.ends.lead_out_power,
+            Parameter::CraterFillTime => self.ends.crater_fill_time,
+            Parameter::CraterPower => self.ends.crater_power,
+            _ => return None,
+        })
     }
 }
 
@@ -274,6 +376,32 @@ pub enum PlateError {
     /// A factor of another shape.
     #[error("{0} cannot be varied here: stepover belongs to overlaps, dwell to walls, angle to corners (--shape).")]
     Factor(Parameter),
+    /// A weave where the torch does not weave.
+    #[error("{0} cannot be varied with a profile that does not weave: set weave.length and weave.amplitude (--set).")]
+    NoWeave(Parameter),
+    /// A parameter that does nothing by itself.
+    #[error("{own} changes nothing while {} is {idle}: set it (--set), or vary it too.", .partner.key().unwrap_or_default())]
+    Idle {
+        /// It.
+        own: Parameter,
+        /// What it needs.
+        partner: Parameter,
+        /// The value of that with which it does nothing.
+        idle: f64,
+    },
+    /// Leads longer than the bead.
+    #[error(
+        "trial {number}: hot start and lead-out take {leads} mm of a bead of {length} mm, and nothing is left between them. \
+         Make the trials longer (--length)."
+    )]
+    Leads {
+        /// The first trial with such leads.
+        number: usize,
+        /// Length of both, mm.
+        leads: f64,
+        /// Length of its bead, mm.
+        length: f64,
+    },
     /// A wire feed that a plan cannot have.
     #[error(
         "a wire feed of {feed:.2} m/min cannot be tried with a profile for {nominal:.2} m/min: a fifth to five times as much is \

@@ -8,6 +8,8 @@ use glam::DVec2;
 pub enum Shape {
     /// One bead, for width and height.
     Bead,
+    /// One bead, for the hump where it begins and the crater where it ends.
+    Ends,
     /// This many beads side by side, for the stepover.
     Overlap(usize),
     /// A wall of this many layers, each a bead, for how it grows with the waits between them.
@@ -15,6 +17,13 @@ pub enum Shape {
     /// Two legs that meet at an angle, for the metal that piles up there.
     Corner,
 }
+
+/// What is measured where beads begin and end: their own width and height, how much higher they are at the start and how much
+/// lower at the end, and the lengths over which that fades.
+pub(super) const ENDS: [&str; 6] =
+    ["width_mm", "height_mm", "hump_height_mm", "hump_length_mm", "crater_depth_mm", "crater_length_mm"];
+/// What is measured at corners.
+pub(super) const CORNER: [&str; 3] = ["height_mm", "height_of_legs_mm", "inner_radius_mm"];
 
 /// A path of a trial, and the layer of the trial in which it lies, from 0.
 pub(super) struct Stroke {
@@ -29,7 +38,7 @@ impl Shape {
             Parameter::Stepover => matches!(self, Self::Overlap(_)),
             Parameter::Dwell => matches!(self, Self::Wall(_)),
             Parameter::Angle => self == Self::Corner,
-            Parameter::DepositionSpeed | Parameter::WireFeedSpeed | Parameter::Job => true,
+            _ => true,
         }
     }
 
@@ -37,9 +46,10 @@ impl Shape {
     pub fn measured(self) -> &'static [&'static str] {
         match self {
             Self::Bead => &["width_mm", "height_mm"],
+            Self::Ends => &ENDS,
             Self::Overlap(_) => &["width_mm", "height_mm", "deepest_valley_mm"],
             Self::Wall(_) => &["height_mm", "width_mm"],
-            Self::Corner => &["height_mm", "height_of_legs_mm", "inner_radius_mm"],
+            Self::Corner => &CORNER,
         }
     }
 
@@ -48,7 +58,7 @@ impl Shape {
     pub(super) fn strokes(self, length: f64, width: f64, value: impl Fn(Parameter) -> Option<f64>) -> Vec<Stroke> {
         let line = |y: f64| vec![DVec2::new(0.0, y), DVec2::new(length, y)];
         match self {
-            Self::Bead => vec![Stroke { layer: 0, points: line(0.0) }],
+            Self::Bead | Self::Ends => vec![Stroke { layer: 0, points: line(0.0) }],
             Self::Overlap(beads) => {
                 let stepover = value(Parameter::Stepover).unwrap_or(0.7) * width;
                 (0..beads).map(|k| Stroke { layer: 0, points: line(k as f64 * stepover) }).collect()

@@ -14,7 +14,7 @@ pub fn csv(title: &str, shape: Shape, factors: &[Factor], trials: &[Placed], len
                 let apart = trial.paths.get(1).map_or(0.0, |second| second[0].distance(trial.paths[0][0]));
                 vec![("distance_mm", format!("{apart:.2}"))]
             }
-            Shape::Bead | Shape::Corner => Vec::new(),
+            Shape::Bead | Shape::Ends | Shape::Corner => Vec::new(),
         }
     };
     let names: Vec<&str> = trials.first().map(more).unwrap_or_default().into_iter().map(|(name, _)| name).collect();
@@ -89,17 +89,47 @@ pub fn as_measured(sheet: &str, plate: usize, trials: &[TrialWelded]) -> Result<
 /// # Errors
 /// [`SheetError`] if the text is no sheet of trials.
 pub fn plates(sheet: &str) -> Result<usize, SheetError> {
-    let Table { plate, rows, .. } = Table::of(sheet)?;
+    let table = Table::of(sheet)?;
+    let plate = table.plate()?;
     let number = |(_, cells): &(usize, Vec<String>)| cells.get(plate)?.parse().ok();
-    Ok(rows.iter().filter_map(number).max().unwrap_or(0))
+    Ok(table.rows.iter().filter_map(number).max().unwrap_or(0))
+}
+
+/// What was measured with the trials of a sheet.
+pub(super) struct Readings {
+    /// What was varied.
+    pub(super) factors: Vec<Parameter>,
+    /// The values of the factors and of the columns that were asked for, `None` where a cell is empty.
+    pub(super) trials: Vec<(Vec<f64>, Vec<Option<f64>>)>,
+}
+
+/// What was measured in some columns; `None` if the sheet lacks one of them.
+///
+/// # Errors
+/// [`SheetError`] if the text is no sheet of trials, or for the first cell that is not a number.
+pub(super) fn readings(sheet: &str, columns: &[&str]) -> Result<Option<Readings>, SheetError> {
+    let table = Table::of(sheet)?;
+    let at = |name: &str| table.column(name);
+    let Some(wanted) = columns.iter().map(|name| at(name)).collect::<Option<Vec<usize>>>() else { return Ok(None) };
+    let (factors, places): (Vec<Parameter>, Vec<usize>) =
+        Parameter::all().filter_map(|factor| Some((factor, at(factor.column())?))).unzip();
+    let row = |(line, cells): &(usize, Vec<String>)| {
+        let wrong = |place: usize| SheetError::Cell { line: line + 1, column: table.columns[place].clone() };
+        let number = |place: &usize| match cells.get(*place).map(|cell| cell.replace(',', ".")).unwrap_or_default() {
+            empty if empty.is_empty() => Ok(None),
+            cell => cell.parse().ok().filter(|value: &f64| value.is_finite()).map(Some).ok_or_else(|| wrong(*place)),
+        };
+        let set = places.iter().map(|place| number(place)?.ok_or_else(|| wrong(*place))).collect::<Result<_, _>>()?;
+        Ok((set, wanted.iter().map(number).collect::<Result<_, _>>()?))
+    };
+    let trials = table.rows.iter().map(row).collect::<Result<_, SheetError>>()?;
+    Ok(Some(Readings { factors, trials }))
 }
 
 /// A sheet, cell by cell.
 struct Table {
     between: char,
     columns: Vec<String>,
-    /// The column with the plates.
-    plate: usize,
     /// The cells of each trial, with the number of its line, from 0.
     rows: Vec<(usize, Vec<String>)>,
 }
@@ -110,20 +140,28 @@ impl Table {
         let (at, head) = lines.next().ok_or(SheetError::Column("plate"))?;
         let between = separator(head);
         let columns = fields(head, between, at + 1)?;
-        let column = |name: &str| columns.iter().position(|own| own == name);
-        let missing = ["plate", "width_mm", "height_mm"].into_iter().find(|name| column(name).is_none());
-        let (None, Some(plate)) = (missing, column("plate")) else {
-            return Err(SheetError::Column(missing.unwrap_or("plate")));
-        };
         let cells = |(number, line)| Ok((number, fields(line, between, number + 1)?));
         let rows = lines.map(cells).collect::<Result<_, LibraryError>>()?;
-        Ok(Self { between, columns, plate, rows })
+        Ok(Self { between, columns, rows })
+    }
+
+    fn column(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|own| own == name)
+    }
+
+    /// The column with the plates, of a sheet for beads.
+    fn plate(&self) -> Result<usize, SheetError> {
+        let missing = |name: &'static str| self.column(name).ok_or(SheetError::Column(name));
+        let plate = missing("plate")?;
+        missing("width_mm").and(missing("height_mm")).and(Ok(plate))
     }
 }
 
 /// The sheet with other numbers in some columns of the trials of a plate; columns that it lacks are left out.
 fn with_cells(sheet: &str, plate: usize, trials: &[Vec<(&'static str, f64)>]) -> Result<String, SheetError> {
-    let Table { between, columns, plate: plates, mut rows } = Table::of(sheet)?;
+    let table = Table::of(sheet)?;
+    let plates = table.plate()?;
+    let Table { between, columns, mut rows } = table;
     let column = |name: &str| columns.iter().position(|own| own == name);
     rows.retain(|(_, cells)| cells.get(plates).is_some_and(|own| own.parse() == Ok(plate)));
     if rows.len() != trials.len() {
@@ -155,6 +193,14 @@ pub enum SheetError {
     /// A line that is not CSV.
     #[error(transparent)]
     Line(#[from] LibraryError),
+    /// A cell without a number.
+    #[error("line {line}, column \"{column}\": a number is expected.")]
+    Cell {
+        /// Number of the line, from 1.
+        line: usize,
+        /// Name of the column.
+        column: String,
+    },
     /// A sheet of another series.
     #[error("the sheet has {sheet} trials on plate {plate}, and its plan {plan}: they do not belong together.")]
     Count {

@@ -16,7 +16,7 @@ mod path;
 mod room;
 mod torch;
 
-pub use path::{lit_ends, path, welded};
+pub use path::{ends_of, path, welded};
 pub use torch::retract_time;
 pub use torch::{Begun, Pause, Torch, Transfer, Way, Welded};
 

@@ -1,6 +1,6 @@
 //! A pass as it is welded: with its overlap, hot start and lead-out.
 
-use crate::layer::Lit;
+use crate::layer::Layer;
 use crate::pass::{Along, Pass, PassKind};
 use crate::process::StartStop;
 use glam::DVec3;
@@ -52,9 +52,9 @@ pub fn welded(pass: &Pass, ends: &StartStop, bead_height: f64) -> Pass {
     Pass { kind: pass.kind, closed: false, points: moves.iter().map(|m| m.to).collect(), width, pace, wait: pass.wait }
 }
 
-/// How a pass begins and ends, given that the arc may stay lit before or after it.
-pub fn lit_ends(ends: &StartStop, lit: Lit) -> StartStop {
-    let mut ends = ends.clone();
+/// How the passes of a layer begin and end, given that the arc may stay lit before or after it.
+pub fn ends_of(layer: &Layer, ends: &StartStop) -> StartStop {
+    let (mut ends, lit) = (ends.at_layer(layer.index), layer.lit);
     if lit.before {
         (ends.lead_in_length, ends.hump_height) = (0.0, 0.0);
     }

@@ -1,7 +1,7 @@
 //! Follows the torch: the travels between passes, the time that everything takes, and the waits.
 
 use super::WeldSettings;
-use super::path::lit_ends;
+use super::path::ends_of;
 use super::room::Room;
 use crate::layer::{Layer, Lit};
 use crate::motion::Motion;
@@ -208,7 +208,7 @@ impl Torch {
 
     /// Wire feed while a crater is filled, as a multiple of the nominal one.
     pub fn crater_feed(&self) -> f64 {
-        self.usual.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
+        self.ends.crater_power * self.process.as_ref().map_or(1.0, Process::rate)
     }
 
     /// Begins a layer at the pass with index `first`: the travel to it if it belongs to another body, and the wait that
@@ -219,7 +219,7 @@ impl Torch {
         };
         let transfer = self.move_to(layer, start);
         self.process = self.nominal.as_ref().map(|process| process.at_layer(layer.index));
-        (self.fresh, self.lit, self.ends) = (true, lit, lit_ends(&self.usual, lit));
+        (self.fresh, self.lit, self.ends) = (true, lit, ends_of(layer, &self.usual));
         let missing = self.usual.min_layer_time - self.seconds;
         let waits = if lit.before { 0.0 } else { missing.max(self.usual.interpass_time) };
         let pause = self.pause(waits);

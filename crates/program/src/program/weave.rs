@@ -1,7 +1,7 @@
 //! The section `[weave]` of a profile, and weaving as moves, for controllers that do not weave by themselves.
 
 use super::{MIN_MOVE_MM, rounded};
-use bead_plan::limit::{Limit, limits};
+use bead_plan::limit::{Broken, Limit, broken_row, limits};
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,32 @@ pub struct Weave {
     /// Number of the weaving file that has these values, on Yaskawa controllers; default 1.
     #[serde(default = "one")]
     pub file: u32,
+    /// Other weaves for some layers; default none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layers: Vec<LayerWeave>,
+}
+
+/// How the torch swings in some layers; what a row leaves out is as in the section.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct LayerWeave {
+    /// First layer, from 1.
+    pub from: usize,
+    /// Last layer.
+    pub to: usize,
+    /// Distance along the pass over which the torch swings once to both sides, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length: Option<f64>,
+    /// How far it swings to each side, mm.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub amplitude: Option<f64>,
+    /// How long it stays at each side, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dwell: Option<f64>,
+    /// Number of the weaving file that has these values, on Yaskawa controllers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<u32>,
 }
 
 fn one() -> u32 {
@@ -28,6 +54,42 @@ fn one() -> u32 {
 }
 
 impl Weave {
+    /// The weave in the layer with this index: the first row that includes the layer applies.
+    ///
+    /// ```
+    /// use bead_program::program::{LayerWeave, Weave};
+    ///
+    /// let wide = LayerWeave { from: 2, to: 3, amplitude: Some(4.0), ..LayerWeave::default() };
+    /// let weave = Weave { length: 3.0, amplitude: 2.0, dwell: 0.0, file: 1, layers: vec![wide] };
+    /// assert_eq!([0, 1].map(|layer| weave.at_layer(layer).amplitude), [2.0, 4.0]);
+    /// ```
+    pub fn at_layer(&self, index: usize) -> Self {
+        let row = self.layers.iter().find(|row| (row.from..=row.to).contains(&(index + 1)));
+        self.with(&row.cloned().unwrap_or_default())
+    }
+
+    fn with(&self, row: &LayerWeave) -> Self {
+        Self {
+            length: row.length.unwrap_or(self.length),
+            amplitude: row.amplitude.unwrap_or(self.amplitude),
+            dwell: row.dwell.unwrap_or(self.dwell),
+            file: row.file.unwrap_or(self.file),
+            layers: Vec::new(),
+        }
+    }
+
+    /// Whether two layers differ in the weave, but not in the weaving file that holds it.
+    pub(crate) fn shares_files(&self) -> bool {
+        let all =
+            || std::iter::once(LayerWeave::default()).chain(self.layers.iter().cloned()).map(|row| self.with(&row));
+        all().any(|a| all().any(|b| a != b && a.file == b.file))
+    }
+
+    /// The first invalid row of layers.
+    pub fn broken(&self) -> Option<Broken> {
+        self.layers.iter().find_map(|row| broken_row("weave", row.from, row.to, &self.with(row).limits()))
+    }
+
     /// The limits of its numbers.
     pub fn limits(&self) -> Vec<Limit> {
         limits! {
@@ -102,7 +164,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     fn weave(dwell: f64) -> Weave {
-        Weave { length: 4.0, amplitude: 1.5, dwell, file: 1 }
+        Weave { length: 4.0, amplitude: 1.5, dwell, file: 1, layers: Vec::new() }
     }
 
     fn time(from: DVec3, swings: &[super::Swing]) -> f64 {

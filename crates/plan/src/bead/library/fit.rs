@@ -1,12 +1,78 @@
 //! Fits a response surface to measured beads: full second order where the measurements allow it, fewer terms elsewhere.
 
 use super::least_squares::{self, Factored, dot};
-use super::{BeadLibrary, Input, LibraryError, Measured, Response, Sample};
+use super::{BeadLibrary, Estimate, Input, LibraryError, Measured, Response, Sample, t_95};
 
 /// Largest number of inputs; the full second order of six has 28 terms.
 const MOST_INPUTS: usize = 6;
+/// Inputs whose values are names, and what they name.
+const UNORDERED: [(&str, &str); 2] = [("job", "jobs of the power source"), ("weave_file", "weaving files")];
 /// Fraction of a column's range within which two values count as one level.
 const SAME_LEVEL: f64 = 1e-9;
+
+/// A polynomial over the inputs of measurements, of the terms that they allow, for any values that were measured with them.
+#[derive(Debug, Clone)]
+pub(crate) struct Surface {
+    /// The measurements without inputs that do not vary.
+    pub(crate) measured: Measured,
+    /// Terms as indices of inputs.
+    pub(super) terms: Vec<Vec<usize>>,
+    /// What had to be left out, as sentences.
+    pub(crate) notes: Vec<String>,
+    factored: Factored,
+    /// The terms of each measurement, and its leverage.
+    rows: Vec<Vec<f64>>,
+    leverages: Vec<f64>,
+}
+
+impl Surface {
+    /// # Errors
+    /// Too few measurements; inputs that do not vary, or that depend on each other.
+    pub(crate) fn over(measured: &Measured) -> Result<Self, LibraryError> {
+        let (measured, mut notes) = varying(measured)?;
+        if measured.unmeasured > 0 {
+            notes.insert(0, format!("{} without measurements left out.", counted(measured.unmeasured)));
+        }
+        let inputs = &measured.inputs;
+        let coded: Vec<Vec<f64>> = measured.rows.iter().map(|row| code(inputs, row)).collect();
+        let wanted = terms(&measured, &mut notes)?;
+        let column = |term: &Vec<usize>| coded.iter().map(|r| term.iter().map(|&i| r[i]).product()).collect();
+        let factored = Factored::new(&wanted.iter().map(column).collect::<Vec<Vec<f64>>>());
+        let terms = kept(inputs, &wanted, &factored, &mut notes)?;
+        let rows: Vec<Vec<f64>> = coded.iter().map(|row| of_terms(&terms, row)).collect();
+        let leverages: Vec<f64> = rows.iter().map(|r| least_squares::leverage(&factored.triangle, r)).collect();
+        Ok(Self { terms, notes, factored, rows, leverages, measured })
+    }
+
+    /// The fit of values that were measured, one for each measurement.
+    pub(crate) fn response(&self, values: &[f64]) -> Response {
+        response(&self.factored, &self.rows, &self.leverages, values)
+    }
+
+    fn largest_leverage(&self) -> f64 {
+        self.leverages.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// A fitted value at a point (−1 to 1 for each input), with the interval in which the next single measurement is expected;
+    /// `None` if the point is unlike all measurements.
+    pub(crate) fn at(&self, response: &Response, coded: &[f64]) -> Option<Estimate> {
+        let row = of_terms(&self.terms, coded);
+        let leverage = least_squares::leverage(&self.factored.triangle, &row);
+        let spread = t_95(self.rows.len() - self.terms.len()) * (1.0 + leverage).sqrt();
+        // Rounding must not exclude the measurements themselves.
+        (leverage <= self.largest_leverage() * (1.0 + 1e-9))
+            .then(|| Estimate { value: dot(&response.coefficients, &row), plus_minus: spread * response.residual })
+    }
+}
+
+/// Values coded: −1 at the least measured value of an input, 1 at the greatest.
+pub(crate) fn code(inputs: &[Input], values: &[f64]) -> Vec<f64> {
+    inputs.iter().zip(values).map(|(input, value)| input.coded(*value)).collect()
+}
+
+fn of_terms(terms: &[Vec<usize>], coded: &[f64]) -> Vec<f64> {
+    terms.iter().map(|term| term.iter().map(|&i| coded[i]).product()).collect()
+}
 
 impl BeadLibrary {
     /// Fits width and height.
@@ -14,27 +80,17 @@ impl BeadLibrary {
     /// # Errors
     /// Too few beads; inputs that do not vary, or that depend on each other.
     pub fn fit(measured: &Measured) -> Result<Self, LibraryError> {
-        let (measured, mut notes) = varying(measured)?;
-        if measured.unmeasured > 0 {
-            notes.insert(0, format!("{} without width and height left out.", counted(measured.unmeasured)));
-        }
-        let inputs = &measured.inputs;
-        let coded: Vec<Vec<f64>> =
-            measured.rows.iter().map(|r| inputs.iter().zip(r).map(|(i, v)| i.coded(*v)).collect()).collect();
-        let wanted = terms(&measured, &mut notes)?;
-        let column = |term: &Vec<usize>| coded.iter().map(|r| term.iter().map(|&i| r[i]).product()).collect();
-        let factored = Factored::new(&wanted.iter().map(column).collect::<Vec<Vec<f64>>>());
-        let terms = kept(inputs, &wanted, &factored, &mut notes)?;
-        let row = |r: &Vec<f64>| terms.iter().map(|t| t.iter().map(|&i| r[i]).product()).collect();
-        let rows: Vec<Vec<f64>> = coded.iter().map(row).collect();
-        let leverages: Vec<f64> = rows.iter().map(|r| least_squares::leverage(&factored.triangle, r)).collect();
+        let surface = Surface::over(measured)?;
+        let [width, height] = [&measured.widths, &measured.heights].map(|values| surface.response(values));
+        let largest_leverage = surface.largest_leverage();
+        let Surface { measured, terms, notes, factored, .. } = surface;
         let sample = |((r, w), h): ((&Vec<f64>, &f64), &f64)| Sample { inputs: r.clone(), width: *w, height: *h };
         Ok(Self {
             version: Self::VERSION,
             synthetic: measured.remarks.iter().any(|r| r.to_lowercase().contains("synthetic")),
-            width: response(&factored, &rows, &leverages, &measured.widths),
-            height: response(&factored, &rows, &leverages, &measured.heights),
-            largest_leverage: leverages.iter().copied().fold(0.0, f64::max),
+            width,
+            height,
+            largest_leverage,
             measured: measured.rows.iter().zip(&measured.widths).zip(&measured.heights).map(sample).collect(),
             inputs: measured.inputs,
             remarks: measured.remarks,
@@ -55,9 +111,9 @@ fn varying(measured: &Measured) -> Result<(Measured, Vec<String>), LibraryError>
     let mut notes = Vec::new();
     for (k, input) in measured.inputs.iter().enumerate().rev() {
         if levels(measured, k) > 1 {
-            if input.name == "job" {
-                let reason = "jobs of the power source have no order. Fit the beads of each job by themselves, or name the inputs.";
-                return Err(LibraryError::Inputs { reason: reason.to_owned() });
+            if let Some((_, what)) = UNORDERED.iter().find(|(name, _)| input.name == *name) {
+                let reason = format!("{what} have no order. Fit the beads of each by themselves, or name the inputs.");
+                return Err(LibraryError::Inputs { reason });
             }
             continue;
         }

@@ -26,9 +26,11 @@ mod student;
 
 pub use demonstration::demonstration_csv;
 pub use error::LibraryError;
+pub(crate) use fit::{Surface, code};
 pub(crate) use least_squares::Factored;
 pub(crate) use measured::fields;
 pub use measured::{Columns, Measured};
+pub(crate) use next::grid;
 pub use printed::{PrintedRow, median, printed_rows};
 pub use solve::{Layering, Limit, PREFERRED_RATIOS, Recipe, Wish};
 pub use student::t_95;
@@ -293,7 +295,7 @@ impl BeadLibrary {
 
     /// Coded values: −1 at the least measured value of an input, 1 at the greatest.
     fn coded(&self, values: &[f64]) -> Vec<f64> {
-        self.inputs.iter().zip(values).map(|(input, &v)| input.coded(v)).collect()
+        code(&self.inputs, values)
     }
 
     fn row(&self, coded: &[f64]) -> Vec<f64> {
@@ -318,11 +320,11 @@ impl Input {
         (value - 0.5 * (self.min + self.max)) / (0.5 * (self.max - self.min))
     }
 
-    fn value(&self, coded: f64) -> f64 {
+    pub(crate) fn value(&self, coded: f64) -> f64 {
         (0.5 * (self.min + self.max) + coded * 0.5 * (self.max - self.min)).clamp(self.min, self.max)
     }
 
-    fn check(&self, value: f64) -> Result<(), LibraryError> {
+    pub(crate) fn check(&self, value: f64) -> Result<(), LibraryError> {
         if (self.min..=self.max).contains(&value) {
             return Ok(());
         }

@@ -8,6 +8,20 @@ const ALONG: usize = 21;
 /// Most points tried in all; with many inputs fewer lie along each.
 const MOST: usize = 200_000;
 
+/// Points of a grid from −1 to 1 along each of this many inputs.
+pub(crate) fn grid(inputs: usize) -> impl Iterator<Item = Vec<f64>> {
+    let along = (2..=ALONG).rev().find(|along| along.pow(inputs as u32) <= MOST).unwrap_or(2);
+    let point = move |mut number: usize| -> Vec<f64> {
+        let next = |_| {
+            let step = number % along;
+            number /= along;
+            2.0 * step as f64 / (along - 1) as f64 - 1.0
+        };
+        (0..inputs).map(next).collect()
+    };
+    (0..along.pow(inputs as u32)).map(point)
+}
+
 impl BeadLibrary {
     /// The bead of the measured range that tells most, with its prediction: about the bead at `wanted` (values of the inputs in
     /// the library's order), or where nothing is wanted, about the whole range.
@@ -17,28 +31,14 @@ impl BeadLibrary {
     /// largest leverage (Kiefer and Wolfowitz 1960, Canad. J. Math. 12). Both assume that the polynomial is right; repeats, and
     /// beads between, tell whether it is.
     pub fn next_trial(&self, wanted: Option<&[f64]>) -> (Vec<f64>, Prediction) {
-        let inputs = self.inputs.len();
-        let along = (2..=ALONG).rev().find(|along| along.pow(inputs as u32) <= MOST).unwrap_or(2);
-        let coded = |mut number: usize| -> Vec<f64> {
-            (0..inputs)
-                .map(|_| {
-                    let step = number % along;
-                    number /= along;
-                    2.0 * step as f64 / (along - 1) as f64 - 1.0
-                })
-                .collect()
-        };
         let toward = wanted.map(|wanted| whitened(&self.triangle, &self.row(&self.coded(wanted))));
         let tells = |coded: &[f64]| {
             let own = whitened(&self.triangle, &self.row(coded));
             let leverage = dot(&own, &own);
             toward.as_ref().map_or(leverage, |toward| dot(toward, &own).powi(2) / (1.0 + leverage))
         };
-        let points = (0..along.pow(inputs as u32)).map(|number| {
-            let point = coded(number);
-            (tells(&point), point)
-        });
-        let none = (f64::NEG_INFINITY, vec![0.0; inputs]);
+        let points = grid(self.inputs.len()).map(|point| (tells(&point), point));
+        let none = (f64::NEG_INFINITY, vec![0.0; self.inputs.len()]);
         let (_, best) = points.fold(none, |best, own| if own.0 > best.0 { own } else { best });
         (self.inputs.iter().zip(&best).map(|(input, coded)| input.value(*coded)).collect(), self.at(&best))
     }

@@ -125,7 +125,7 @@ impl FanucTp {
 
     /// Weaves with a pitch that is the same at any speed (mm/s).
     fn weave_at(&mut self, program: &mut Program, speed: f64) {
-        let Some(weave) = &self.weave else { return };
+        let Some(weave) = self.weave.as_ref().map(|weave| weave.at_layer(self.frame.layer)) else { return };
         let [hertz, amplitude] = [speed / weave.length, weave.amplitude].map(|v| fixed(v, 1));
         let dwell = fixed(weave.dwell, 3);
         let wanted = format!("[{hertz}Hz,{amplitude}mm,{dwell}s,{dwell}s]");

@@ -306,7 +306,8 @@ impl Syntax for YaskawaInform {
     }
 
     fn begin_weave(&mut self, job: &mut JobText) {
-        self.weave.iter().for_each(|weave| job.line(&format!("WVON WEV#({})", weave.file)));
+        let own = self.weave.iter().map(|weave| weave.at_layer(self.frame.layer).file);
+        own.for_each(|file| job.line(&format!("WVON WEV#({file})")));
     }
 
     fn end_weave(&mut self, job: &mut JobText) {

@@ -31,8 +31,6 @@ pub(super) struct KukaKrl {
     table: Option<[f64; 2]>,
     /// A, B, C of the torch, °.
     orientation: [f64; 3],
-    /// Index of the layer.
-    layer: usize,
     /// Speed last set in the module, mm/s.
     speed: f64,
     /// The module's forms, if ArcTech switches the arc.
@@ -46,7 +44,7 @@ impl KukaKrl {
         let frame = Frame { volumes, ..Frame::new(job, upper_name(&job.part), MAX_COMMENT, &krl) };
         let table = job.program.first_angles();
         let orientation = krl.orientation;
-        Self { frame, krl, weave: job.weave.cloned(), table, orientation, layer: 0, speed: 0.0, forms: None }
+        Self { frame, krl, weave: job.weave.cloned(), table, orientation, speed: 0.0, forms: None }
     }
 
     fn head(&self, module: &str) -> String {
@@ -89,7 +87,8 @@ impl KukaKrl {
 
     fn new_forms(&self) -> Option<Forms> {
         let arctech = self.krl.arctech.as_ref().filter(|_| self.krl.arc == KrlArc::Arctech)?;
-        Some(Forms::new(arctech, &self.krl, &self.frame.process, self.weave.as_ref(), self.frame.travel_speed))
+        let weave = self.weave.as_ref().map(|weave| weave.at_layer(self.frame.layer));
+        Some(Forms::new(arctech, &self.krl, &self.frame.process, weave.as_ref(), self.frame.travel_speed))
     }
 
     /// Writes one instruction of a layer by forms, which include the move to their point; false for one without a form.
@@ -143,7 +142,7 @@ impl KukaKrl {
 
     /// Job of the power source in the current layer.
     fn job(&self) -> u32 {
-        self.frame.process.at_layer(self.layer).job
+        self.frame.process.at_layer(self.frame.layer).job
     }
 
     fn aggregate(&self, to: DVec3) -> String {
@@ -290,7 +289,7 @@ impl Syntax for KukaKrl {
     /// The module and the data of its forms.
     fn part(&mut self, part: &Part, moves: &[Instruction]) -> Vec<Chunk> {
         let (module, layer) = (self.name_of(part), part.layer + 1);
-        (self.layer, self.speed, self.forms) = (part.layer, 0.0, self.new_forms());
+        (self.speed, self.forms) = (0.0, self.new_forms());
         let mut text = self.head(&module);
         text.reserve(moves.len() * 70);
         text.push_str(&format!("; layer {layer}, z {} mm\r\n", fixed(part.z, 3)));

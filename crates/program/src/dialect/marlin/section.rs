@@ -110,7 +110,7 @@ impl Section for Marlin {
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
         // A printer's E sets the feed of every move, but nothing can be fed without a move.
         let cannot = |what, remedy| Err(DialectError::Cannot { dialect: "marlin", what, remedy });
-        if job.weld.ends.crater_fill_time > 0.0 && !job.dry_run {
+        if job.weld.ends.fills_craters() && !job.dry_run {
             return cannot("a start_stop.crater_fill_time", "Strands have no craters: leave it out.");
         }
         if job.weld.ends.wire_retract > 0.0 && !job.dry_run {

@@ -161,7 +161,7 @@ struct Probe {
 /// Everything that the job needs.
 fn probes(job: &Job<'_>) -> Vec<Probe> {
     let (ends, burns) = (&job.weld.ends, !job.dry_run);
-    let (arcs, crater) = (job.program.arcs, burns && ends.crater_fill_time > 0.0);
+    let (arcs, crater) = (job.program.arcs, burns && ends.fills_craters());
     let weak = burns && ends.crater_is_weaker();
     let feeds = weak || burns && job.weld.process.follow == Follow::WireFeed;
     let waits = burns && (ends.interpass_time > 0.0 || ends.min_layer_time > 0.0);

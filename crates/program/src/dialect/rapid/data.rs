@@ -1,6 +1,6 @@
 //! Data of RAPID as literals: frames, speeds, zones, seams and welds.
 
-use super::section::{Rapid, WireFeedUnit};
+use super::section::{Rapid, RapidSeam, WireFeedUnit};
 use crate::number::{fixed, push_fixed};
 use crate::program::{ProgramSettings, Weave};
 use bead_plan::process::Process;
@@ -75,8 +75,7 @@ fn arc(process: &Process, rapid: &Rapid, part: f64, schedule: u32) -> String {
 }
 
 /// Seamdata.
-fn seam(process: &Process, rapid: &Rapid) -> String {
-    let seam = &rapid.seam;
+pub(super) fn seam(process: &Process, rapid: &Rapid, seam: &RapidSeam) -> String {
     let time = |seconds: f64| fixed(seconds, 3);
     let main = arc(process, rapid, 1.0, rapid.schedule);
     [
@@ -135,7 +134,7 @@ pub(super) fn declarations(
         };
         format!("TASK PERS wobjdata {}:=[FALSE,{frames}];", rapid.wobj)
     });
-    let seam = arc.then(|| format!("TASK PERS seamdata smBead:=[{}];", seam(process, rapid)));
+    let seam = arc.then(|| format!("TASK PERS seamdata smBead:=[{}];", seam(process, rapid, &rapid.seam)));
     let zone = (rapid.zone > 0.0).then(|| format!("CONST zonedata zBead:={};", zone(rapid.zone)));
     let always = [
         format!("CONST jointtarget jHome:=[{},{axes}];", list(&rapid.home, 3)),

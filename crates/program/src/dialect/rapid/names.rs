@@ -8,7 +8,7 @@ pub(crate) const MAX_NAME: usize = 32;
 pub(crate) const MAX_FOLDER: usize = 40;
 
 /// Data that the post declares; welddata are `wd1`, `wd2`, …, weavedata `wv1`, …, speeddata of the plain variant `vd1`, ….
-pub(crate) const OWN: [&str; 8] = ["jHome", "vHome", "vTravel", "zBead", "smBead", "nStart", "nDz", "main"];
+pub(crate) const OWN: [&str; 9] = ["jHome", "vHome", "vTravel", "zBead", "smBead", "smLayer", "nStart", "nDz", "main"];
 
 /// Words of the language, and system data and types after which a part might happen to be named.
 const RESERVED: &str = "\

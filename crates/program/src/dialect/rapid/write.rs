@@ -5,7 +5,7 @@
 //! lines that the profile gives. While welding, the welddata set the speed: speeds are rounded to the nominal one plus
 //! or minus whole multiples of `speed_step`, and each layer declares the few it uses, `LOCAL` to its module.
 
-use super::section::{Rapid, RapidArc, RapidModules};
+use super::section::{Rapid, RapidArc, RapidModules, RapidSeam};
 use super::{data, names};
 use crate::dialect::writing::frame::{self, Frame, Part, Piece, SUFFIX, Skippable, Syntax};
 use crate::dialect::writing::orientation::{self, Turn};
@@ -13,6 +13,7 @@ use crate::dialect::writing::{Chunk, Job, restart};
 use crate::number::fixed;
 use crate::program::{Attitude, Instruction, LayerProgram, Weave};
 use bead_plan::pass::PassKind;
+use bead_plan::process::{Process, StartStop};
 use bead_plan::weld::retract_time;
 use glam::DVec3;
 
@@ -29,6 +30,9 @@ const ROUTINES: [&str; 5] = ["PROC ", "TRAP ", "FUNC ", "LOCAL PROC ", "LOCAL TR
 pub(super) struct AbbRapid {
     frame: Frame,
     rapid: Rapid,
+    /// The section's seam, without `[start_stop]`, and how that begins and ends passes.
+    plain: RapidSeam,
+    ends: StartStop,
     weave: Option<Weave>,
     orientation: String,
     /// External axes of targets.
@@ -48,11 +52,12 @@ impl AbbRapid {
     /// Begins the program of a part and names the module after the part.
     pub(super) fn new(job: &Job<'_>, rapid: Rapid) -> Self {
         let name = names::module_name(&job.part, 3, [&rapid.tool, &rapid.wobj]);
-        let rapid = with_ends(rapid, job);
+        let (plain, ends) = (rapid.seam.clone(), job.weld.ends.clone());
+        let rapid = Rapid { seam: with_ends(&plain, &ends, &job.weld.process), ..rapid };
         let orientation = data::quaternion(&rapid.orientation);
         let axes = data::external_axes(job.program, job.program.first_angles(), &rapid);
         let frame = Frame::new(job, name, MAX_COMMENT, &rapid);
-        Self { frame, rapid, weave: job.weave.cloned(), orientation, axes, speeds: Speeds::new() }
+        Self { frame, rapid, plain, ends, weave: job.weave.cloned(), orientation, axes, speeds: Speeds::new() }
     }
 
     fn with_arc(&self) -> bool {
@@ -123,6 +128,12 @@ impl AbbRapid {
     fn declare(&self, text: &mut String, layer: usize) {
         let nominal = &self.frame.process;
         let process = nominal.at_layer(layer);
+        if let Some(seam) = self.own_seam().filter(|_| self.with_arc()) {
+            text.push_str(&format!(
+                "  LOCAL PERS seamdata smLayer:=[{}];\r\n",
+                data::seam(nominal, &self.rapid, &seam)
+            ));
+        }
         for (i, &(speed, pace)) in self.speeds.iter().enumerate() {
             let speed = speed as f64 / 1000.0;
             let declaration = if self.with_arc() {
@@ -133,10 +144,16 @@ impl AbbRapid {
             };
             text.push_str(&format!("  {declaration}\r\n"));
             if let Some(weave) = self.weave.as_ref().filter(|_| self.with_arc()) {
-                let data = data::weave(weave, speed);
+                let data = data::weave(&weave.at_layer(layer), speed);
                 text.push_str(&format!("  LOCAL PERS weavedata wv{}:={data};\r\n", i + 1));
             }
         }
+    }
+
+    /// The seam of the current layer, if it differs from that of the program.
+    fn own_seam(&self) -> Option<RapidSeam> {
+        let seam = with_ends(&self.plain, &self.ends.at_layer(self.frame.layer), &self.frame.process);
+        (seam != self.rapid.seam).then_some(seam)
     }
 
     /// Number of the data for a speed at the current wire feed, from 1.
@@ -179,7 +196,8 @@ impl AbbRapid {
     /// The data of a move with the arc on: the welddata with this number, and the weavedata if the torch weaves.
     fn arc_data(&self, number: usize) -> String {
         let weave = self.weave.as_ref().map(|_| format!("\\Weave:=wv{number}"));
-        format!("vTravel,smBead,wd{number}{}", weave.unwrap_or_default())
+        let seam = if self.own_seam().is_some() { "smLayer" } else { "smBead" };
+        format!("vTravel,{seam},wd{number}{}", weave.unwrap_or_default())
     }
 
     /// The lines of `main` that run a layer.
@@ -403,15 +421,15 @@ fn routine(part: &Part) -> String {
 }
 
 /// Crater filling and wire retraction at the end of a seam as in the section `start_stop`, if it sets them.
-fn with_ends(mut rapid: Rapid, job: &Job<'_>) -> Rapid {
-    let ends = &job.weld.ends;
+fn with_ends(plain: &RapidSeam, ends: &StartStop, process: &Process) -> RapidSeam {
+    let mut seam = plain.clone();
     if ends.crater_fill_time > 0.0 {
-        (rapid.seam.fill_time, rapid.seam.fill_feed) = (ends.crater_fill_time, ends.crater_power);
+        (seam.fill_time, seam.fill_feed) = (ends.crater_fill_time, ends.crater_power);
     }
     if ends.wire_retract > 0.0 {
-        rapid.seam.rollback_time = retract_time(ends, &job.weld.process);
+        seam.rollback_time = retract_time(ends, process);
     }
-    rapid
+    seam
 }
 
 /// A statement of a routine on its own line.

@@ -72,6 +72,8 @@ pub(in crate::dialect) struct Frame {
     pub(in crate::dialect) values: Values,
     /// The wire feed as a multiple of the nominal one.
     pub(in crate::dialect) feed: f64,
+    /// Index of the layer that is written.
+    pub(in crate::dialect) layer: usize,
     /// Number of layers.
     pub(in crate::dialect) layers: usize,
     /// Digits of layer numbers in names.
@@ -95,6 +97,7 @@ impl Frame {
             travel_speed: job.weld.travel.speed,
             lines: Lines::of(section),
             feed: 1.0,
+            layer: 0,
             layers: 0,
             digits: 3,
             volumes: None,
@@ -272,6 +275,7 @@ impl<S: Syntax> Writer for S {
             return Vec::new();
         }
         self.frame_mut().values.set_layer(program);
+        self.frame_mut().layer = program.index;
         self.begin_layer(program);
         let parts = split::passes(&program.instructions, self.most_moves());
         let (count, digits) = (parts.len(), self.frame().digits);

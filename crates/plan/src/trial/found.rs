@@ -1,0 +1,204 @@
+//! What filled sheets say of humps, craters and corners over what was varied.
+
+use super::Parameter;
+use super::shape::{CORNER, ENDS};
+use super::sheet::{self, Readings, SheetError};
+use crate::bead::library::{Estimate, Input, LibraryError, Measured, Response, Surface, code, grid, t_95};
+
+/// What the trials of a sheet were welded for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// Humps and craters.
+    Ends,
+    /// The metal that piles up at corners.
+    Corners,
+}
+
+/// Fits of what was measured at the starts and ends of beads, or at corners.
+pub struct Found {
+    /// Which of them.
+    pub subject: Subject,
+    /// Names of the two values that are fitted: heights of hump and depths of craters, or the excess height of corners and their
+    /// inner radius, mm.
+    pub names: [&'static str; 2],
+    /// How good the fits are.
+    pub responses: [Response; 2],
+    /// For hump and crater, the length over which each fades, mm: the mean over the trials that have one.
+    pub lengths: [Option<Estimate>; 2],
+    /// What the fit had to leave out, as sentences.
+    pub notes: Vec<String>,
+    factors: Vec<Parameter>,
+    surface: Surface,
+}
+
+/// Settings with which hump and crater are least.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Best {
+    /// The settings that were varied.
+    pub settings: Vec<(Parameter, f64)>,
+    /// Height of the hump that is left and depth of the crater, mm.
+    pub left: [Estimate; 2],
+}
+
+/// Times that the grid on which the best settings are sought is made finer about the best so far, and how much.
+const FINER: usize = 3;
+const FACTOR: f64 = 0.1;
+
+impl Found {
+    /// What a sheet says; `None` if it is not one for starts and ends or for corners.
+    ///
+    /// # Errors
+    /// [`FoundError`] for a cell that is not a number, and for too few trials.
+    pub fn read(text: &str) -> Result<Option<Self>, FoundError> {
+        if let Some(readings) = sheet::readings(text, &ENDS[2..])? {
+            let names = ["hump height", "crater depth"];
+            return Self::of(&readings, Subject::Ends, names, |cells| [cells[0], cells[2]], [Some(1), Some(3)])
+                .map(Some);
+        }
+        let Some(readings) = sheet::readings(text, &CORNER)? else { return Ok(None) };
+        let excess = |cells: &[Option<f64>]| [cells[0].zip(cells[1]).map(|(corner, legs)| corner - legs), cells[2]];
+        Self::of(&readings, Subject::Corners, ["excess height", "inner radius"], excess, [None; 2]).map(Some)
+    }
+
+    /// `values` takes the two fitted values from the cells of a trial, which counts if it has both; `lengths` are the columns with
+    /// the lengths that belong to them.
+    fn of(
+        readings: &Readings,
+        subject: Subject,
+        names: [&'static str; 2],
+        values: fn(&[Option<f64>]) -> [Option<f64>; 2],
+        lengths: [Option<usize>; 2],
+    ) -> Result<Self, FoundError> {
+        let mut measured = Measured::default();
+        let mut found = [Vec::new(), Vec::new()];
+        for (set, cells) in &readings.trials {
+            let [Some(first), Some(second)] = values(cells) else {
+                measured.unmeasured += 1;
+                continue;
+            };
+            measured.rows.push(set.clone());
+            found[0].push(first);
+            found[1].push(second);
+        }
+        if measured.rows.is_empty() {
+            return Err(FoundError::Empty(names));
+        }
+        measured.inputs = (0..).zip(&readings.factors).map(|(k, factor)| input(*factor, k, &measured.rows)).collect();
+        let surface = Surface::over(&measured)?;
+        let own = |name: &str| readings.factors.iter().copied().find(|factor| factor.name() == name);
+        Ok(Self {
+            subject,
+            names,
+            responses: [0, 1].map(|k| surface.response(&found[k])),
+            lengths: lengths
+                .map(|column| mean(readings.trials.iter().filter_map(|(_, cells)| cells[column?]).collect())),
+            notes: surface.notes.clone(),
+            factors: surface.measured.inputs.iter().filter_map(|input| own(&input.name)).collect(),
+            surface,
+        })
+    }
+
+    /// Each combination that was measured, with the fitted values there.
+    pub fn fitted(&self) -> Vec<(Vec<f64>, [Estimate; 2])> {
+        let mut combinations = self.surface.measured.rows.clone();
+        combinations.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        combinations.dedup();
+        let at = |values: Vec<f64>| Some((self.at(&code(&self.surface.measured.inputs, &values))?, values));
+        combinations.into_iter().filter_map(at).map(|(fit, values)| (values, fit)).collect()
+    }
+
+    /// What varies, in the order of the values of [`fitted`](Self::fitted).
+    pub fn factors(&self) -> &[Parameter] {
+        &self.factors
+    }
+
+    /// Number of trials that were measured.
+    pub fn trials(&self) -> usize {
+        self.surface.measured.rows.len()
+    }
+
+    /// Within the range that was tried, the settings of starts and ends with which the sum of the squares of hump and crater is least;
+    /// what else was varied has the value that `nominal` gives.
+    ///
+    /// # Errors
+    /// [`FoundError::Library`] if a nominal value lies outside the range that was tried.
+    pub fn best(&self, nominal: impl Fn(Parameter) -> Option<f64>) -> Result<Best, FoundError> {
+        let inputs = &self.surface.measured.inputs;
+        let mut fixed = vec![None; inputs.len()];
+        for (k, (input, factor)) in inputs.iter().zip(&self.factors).enumerate() {
+            if let Some(value) = nominal(*factor).filter(|_| !is_of_ends(*factor)) {
+                input.check(value)?;
+                fixed[k] = Some(code(&inputs[k..=k], &[value])[0]);
+            }
+        }
+        let place = |free: &[f64]| -> Vec<f64> {
+            let mut free = free.iter().copied();
+            fixed.iter().map(|own| own.unwrap_or_else(|| free.next().unwrap_or_default())).collect()
+        };
+        let misses = |free: &[f64]| {
+            self.at(&place(free))
+                .map(|fit| fit.iter().map(|own| own.value.powi(2)).sum::<f64>())
+                .unwrap_or(f64::INFINITY)
+        };
+        let count = fixed.iter().filter(|own| own.is_none()).count();
+        let mut best = (f64::INFINITY, vec![0.0; count]);
+        for step in (0..=FINER).map(|finer| FACTOR.powi(finer as i32)) {
+            let middle = best.1.clone();
+            let about = |point: Vec<f64>| -> Vec<f64> {
+                middle.iter().zip(point).map(|(middle, by)| (middle + step * by).clamp(-1.0, 1.0)).collect()
+            };
+            let tried = grid(count).map(about).map(|point| (misses(&point), point));
+            best = tried.fold(best, |best, own| if own.0 < best.0 { own } else { best });
+        }
+        let coded = place(&best.1);
+        let left = self.at(&coded).ok_or(FoundError::Unlike)?;
+        let varied = self.factors.iter().zip(inputs).zip(&coded);
+        let settings = varied.map(|((factor, input), own)| (*factor, input.value(*own)));
+        Ok(Best { settings: settings.filter(|(factor, _)| is_of_ends(*factor)).collect(), left })
+    }
+
+    fn at(&self, coded: &[f64]) -> Option<[Estimate; 2]> {
+        let [first, second] = [0, 1].map(|k| self.surface.at(&self.responses[k], coded));
+        Some([first?, second?])
+    }
+}
+
+fn is_of_ends(factor: Parameter) -> bool {
+    factor.key().is_some_and(|key| key.starts_with("start_stop."))
+}
+
+/// A factor as an input, with the range of its values in column `k`.
+fn input(factor: Parameter, k: usize, rows: &[Vec<f64>]) -> Input {
+    let values = || rows.iter().map(|row| row[k]);
+    let (min, max) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    Input { name: factor.name().to_owned(), unit: factor.unit().to_owned(), min, max }
+}
+
+/// The mean of values, with the interval that holds the true one with 95 % probability; `None` without any.
+fn mean(values: Vec<f64>) -> Option<Estimate> {
+    let count = values.len() as f64;
+    let value = values.iter().sum::<f64>() / count;
+    let square = values.iter().map(|own| (own - value).powi(2)).sum::<f64>();
+    match values.len() {
+        0 => None,
+        1 => Some(Estimate { value, plus_minus: f64::INFINITY }),
+        n => Some(Estimate { value, plus_minus: t_95(n - 1) * (square / (count - 1.0) / count).sqrt() }),
+    }
+}
+
+/// Why a sheet says nothing of starts, ends or corners.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FoundError {
+    /// No sheet, or one with a cell that is not a number.
+    #[error(transparent)]
+    Sheet(#[from] SheetError),
+    /// Trials that allow no fit.
+    #[error(transparent)]
+    Library(#[from] LibraryError),
+    /// Nothing was filled in.
+    #[error("no trial has both {} and {} yet: fill them in, with 0 where there is none.", .0[0], .0[1])]
+    Empty([&'static str; 2]),
+    /// A point between trials that are too far apart.
+    #[error("the process of the profile is too far from all trials together: weld some with it.")]
+    Unlike,
+}
