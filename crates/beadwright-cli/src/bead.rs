@@ -77,9 +77,13 @@ pub(crate) struct Fit {
     #[arg(long, short, value_name = "NAME|FILE")]
     profile: Option<String>,
     /// Profile to write: with the bead, the layer height and the parameters of the wanted bead, with the values that records show, or
-    /// with the starts and ends that trials show.
+    /// with the starts and ends or the stepover that trials show.
     #[arg(long, value_name = "FILE.toml")]
     to: Option<PathBuf>,
+    /// With a sheet of beads side by side: depth of the valleys that may remain between them, mm; a tenth of the bead's height if left
+    /// out.
+    #[arg(long, requires = "data", value_parser = parse_valley, value_name = "MM")]
+    valley: Option<f64>,
     #[command(flatten)]
     layering: LayeringArguments,
     /// Write a picture of width/height over the first input, with a curve for each value of the second.
@@ -313,11 +317,16 @@ fn fit(arguments: &Fit) -> anyhow::Result<()> {
     if let Some(found) = Found::read(&text).with_context(|| data.display().to_string())? {
         anyhow::ensure!(
             arguments.want.is_none(),
-            "--want needs a sheet of single beads: this one is of starts and ends, or of corners."
+            "--want needs a sheet of single beads: this one is of starts and ends, of corners, or of beads side by side."
         );
         let (profile, to) = (arguments.profile.as_deref(), arguments.to.as_deref());
-        return crate::ends::run(&found, &crate::ends::Wanted { profile, to, json: arguments.json });
+        let wanted = crate::found::Wanted { profile, to, valley: arguments.valley, json: arguments.json };
+        return crate::found::run(&found, &wanted);
     }
+    anyhow::ensure!(
+        arguments.valley.is_none(),
+        "--valley needs a sheet of beads side by side (bead trial --shape overlap)."
+    );
     let goes_into_profile = arguments.to.is_some() || arguments.profile.is_some() && arguments.from.is_empty();
     anyhow::ensure!(
         !goes_into_profile || arguments.want.is_some(),
@@ -532,6 +541,11 @@ fn parse_bead(text: &str) -> Result<(f64, f64), String> {
 fn parse_value(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("NAME=VALUE is expected, such as current=120")?;
     Ok((name.trim().to_owned(), number(value)?))
+}
+
+fn parse_valley(text: &str) -> Result<f64, String> {
+    let depth = number(text)?;
+    if (0.0..=50.0).contains(&depth) { Ok(depth) } else { Err("a depth of 0 to 50 mm is expected".to_owned()) }
 }
 
 fn parse_limit(text: &str) -> Result<Limit, String> {

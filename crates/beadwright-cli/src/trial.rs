@@ -5,7 +5,9 @@ use anyhow::Context;
 use beadwright::Layer;
 use beadwright::files::{Folder, PLAN, write_file};
 use beadwright::number::fixed;
-use beadwright::trial::{self, Design, Factor, Layout, Plate, PlatePlan, Series, Shape};
+use beadwright::pass::Pass;
+use beadwright::trial::{self, BeadSize, Design, Factor, Layout, More, Plate, PlatePlan, Series, Shape, Slope};
+use glam::DVec2;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -223,11 +225,10 @@ fn say(arguments: &Arguments, series: &Series, plans: &[PlatePlan]) -> anyhow::R
         Shape::Wall(_) => {
             format!("Fill in {folder}/sheet.csv, then: beadwright bead walls {folder}/sheet.csv -p PROFILE")
         }
-        Shape::Ends => format!(
+        Shape::Ends | Shape::Overlap(_) => format!(
             "Fill in {folder}/sheet.csv, then: beadwright bead fit {folder}/sheet.csv -p PROFILE --to FILE.toml"
         ),
         Shape::Corner => format!("Fill in {folder}/sheet.csv, then: beadwright bead fit {folder}/sheet.csv"),
-        Shape::Overlap(_) => format!("Fill in {folder}/sheet.csv."),
     };
     Ok(writeln!(out, "\n{folder}/sheet.html shows what lies where. {fit}")?)
 }
@@ -252,36 +253,49 @@ pub(crate) fn measure(arguments: &Measure) -> anyhow::Result<()> {
     let folder = arguments.sheet.parent().unwrap_or(Path::new("")).join(PlatePlan::name(arguments.plate.max(1) - 1));
     let source = program::Source::open(&folder.join(PLAN))?;
     let plan = source.plan().with_context(|| format!("{} holds no plan.json", folder.display()))?;
-    // The last layer may be numbers: a trial is one bead.
-    let bead = |layer: &Layer| match &layer.passes[..] {
-        [pass] if pass.points.len() == 2 => Some([pass.points[0].truncate(), pass.points[1].truncate()]),
+    // A layer for each trial, and perhaps one with their numbers; walls have more.
+    let line = |pass: &Pass| match pass.points[..] {
+        [from, to] => Some([from.truncate(), to.truncate()]),
         _ => None,
     };
-    let beads: Vec<_> = plan.layers.iter().map_while(bead).collect();
+    let named = || arguments.sheet.display().to_string();
+    let count = trial::trials_on(&text, arguments.plate).with_context(named)?;
+    let level = plan.layers.first().map(|layer| layer.z);
+    let trial = |layer: &Layer| if Some(layer.z) == level { layer.passes.iter().map(line).collect() } else { None };
+    let beads: Option<Vec<Vec<[DVec2; 2]>>> = plan.layers.iter().take(count).map(trial).collect();
+    let beads = beads.context(
+        "a scan is measured for straight beads, by themselves or side by side. Measure walls and corners by hand.",
+    )?;
     let (task, bar) = progress::task()?;
-    let named = || arguments.scan.display().to_string();
     let scan = arguments.scanner.read(&arguments.scan, 1.0, &task)?;
     bar.finish_and_clear();
     let reach = plan.layers.first().and_then(|layer| layer.passes.first()).map_or(0.0, |pass| REACH * pass.width.max());
-    let sizes = trial::measured(&scan.points, &beads, reach).with_context(named)?;
-    let sheet = trial::filled(&text, arguments.plate, &sizes).with_context(|| arguments.sheet.display().to_string())?;
+    let sizes = trial::measured(&scan.points, &beads, reach).with_context(|| arguments.scan.display().to_string())?;
+    let sheet = trial::filled(&text, arguments.plate, &sizes).with_context(named)?;
     let output = arguments.output.as_ref().unwrap_or(&arguments.sheet);
     write_file(output, sheet.as_bytes())?;
     let mut out = std::io::stdout().lock();
-    writeln!(out, "  bead on the plate   width mm  varies   height mm  varies")?;
     for (k, size) in sizes.iter().enumerate() {
-        match size {
-            Some(size) => writeln!(
-                out,
-                "  {:17} {:10.2} {:7.2} {:11.2} {:7.2}",
-                k + 1,
-                size.width,
-                size.width_varies,
-                size.height,
-                size.height_varies
-            )?,
-            None => writeln!(out, "  {:17} not seen in the scan", k + 1)?,
-        }
+        writeln!(out, "  {:3}  {}", k + 1, size.as_ref().map_or("not seen in the scan".to_owned(), seen))?;
     }
     Ok(writeln!(out, "\nfilled in {}", output.display())?)
+}
+
+/// What a scan says of a trial.
+fn seen(BeadSize { width, height, more }: &BeadSize) -> String {
+    match more {
+        More::Beside { valley } => {
+            format!("{width:.2} mm wide, {height:.2} mm high, deepest valley {valley:.2} mm")
+        }
+        More::One { width_varies, height_varies, hump, crater } => {
+            let fades = |slope: &Slope| slope.length.map_or(String::new(), |length| format!(" over {length:.0} mm"));
+            format!(
+                "{width:.2} ± {width_varies:.2} mm wide, {height:.2} ± {height_varies:.2} mm high, hump {:.2} mm{}, crater {:.2} mm{}",
+                hump.height,
+                fades(hump),
+                crater.height,
+                fades(crater)
+            )
+        }
+    }
 }

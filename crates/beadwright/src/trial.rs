@@ -4,6 +4,7 @@
 
 pub use bead_plan::trial::*;
 
+use crate::bead::library::Estimate;
 use crate::dialect::{Chunk, DialectError};
 use crate::files::{PlanFiles, Programs, Selection};
 use crate::layer::Extent;
@@ -95,9 +96,9 @@ fn row_of_weave(series: &Series, &Span { from, to, trial }: &Span<'_>) -> Option
     (row != usual).then_some(row)
 }
 
-/// A value of `[start_stop]` that trials of starts and ends show.
+/// A value of a profile that trials show.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct EndsLesson {
+pub struct Lesson {
     /// Its key.
     pub key: &'static str,
     /// The value of the profile.
@@ -108,11 +109,11 @@ pub struct EndsLesson {
     pub plus_minus: Option<f64>,
 }
 
-/// What trials of starts and ends say of a profile.
+/// What trials say of a profile.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
-pub struct EndsLearnt {
+pub struct Learnt {
     /// Values for the profile.
-    pub lessons: Vec<EndsLesson>,
+    pub lessons: Vec<Lesson>,
     /// What no value can express, as sentences.
     pub notes: Vec<String>,
 }
@@ -122,19 +123,11 @@ pub struct EndsLearnt {
 ///
 /// # Errors
 /// [`FoundError`] if the profile's process lies outside what was tried.
-pub fn ends_learnt(found: &Found, profile: &Profile) -> Result<EndsLearnt, FoundError> {
+pub fn ends_learnt(found: &Found, profile: &Profile) -> Result<Learnt, FoundError> {
     let nominal = nominal(profile);
-    let weave = profile.weave.as_ref();
-    let best = found.best(|parameter| match parameter {
-        Parameter::DepositionSpeed => Some(profile.process.deposition_speed),
-        Parameter::WireFeedSpeed => Some(profile.process.wire_feed_speed),
-        Parameter::WeaveLength => weave.map(|weave| weave.length),
-        Parameter::WeaveAmplitude => weave.map(|weave| weave.amplitude),
-        Parameter::WeaveDwell => weave.map(|weave| weave.dwell),
-        _ => None,
-    })?;
+    let best = found.best(|parameter| set(profile, parameter))?;
     let mut ends = profile.start_stop.clone();
-    let EndsLearnt { mut lessons, mut notes } = EndsLearnt::default();
+    let Learnt { mut lessons, mut notes } = Learnt::default();
     for (parameter, value) in best.settings {
         let (Some(key), Some(before)) = (parameter.key(), nominal.end(parameter)) else { continue };
         match parameter {
@@ -144,7 +137,7 @@ pub fn ends_learnt(found: &Found, profile: &Profile) -> Result<EndsLearnt, Found
             Parameter::LeadOutPower => ends.lead_out_power = value,
             _ => {}
         }
-        lessons.push(EndsLesson { key, before, after: value, plus_minus: None });
+        lessons.push(Lesson { key, before, after: value, plus_minus: None });
     }
     let ([hump, crater], [hump_length, crater_length]) = (best.left, found.lengths);
     let (height, own) = (profile.bead.height, &profile.start_stop);
@@ -162,9 +155,54 @@ pub fn ends_learnt(found: &Found, profile: &Profile) -> Result<EndsLearnt, Found
                 "{key} would have to be {value:.2} mm: the deposit model lays more of the lead's metal upwards than was measured."
             ));
         }
-        lessons.push(EndsLesson { key, before, after: value.max(0.0), plus_minus: Some(within) });
+        lessons.push(Lesson { key, before, after: value.max(0.0), plus_minus: Some(within) });
     }
-    Ok(EndsLearnt { lessons, notes })
+    Ok(Learnt { lessons, notes })
+}
+
+/// The value that a profile has for what trials of ends and overlaps vary besides.
+fn set(profile: &Profile, parameter: Parameter) -> Option<f64> {
+    let weave = profile.weave.as_ref();
+    match parameter {
+        Parameter::DepositionSpeed => Some(profile.process.deposition_speed),
+        Parameter::WireFeedSpeed => Some(profile.process.wire_feed_speed),
+        Parameter::WeaveLength => weave.map(|weave| weave.length),
+        Parameter::WeaveAmplitude => weave.map(|weave| weave.amplitude),
+        Parameter::WeaveDwell => weave.map(|weave| weave.dwell),
+        _ => None,
+    }
+}
+
+/// Depth of the valleys that may remain between beads, as a fraction of their height, if nothing else is said.
+const VALLEY: f64 = 0.1;
+
+/// What trials of beads side by side say of a profile: the widest stepover whose valleys are at most `deepest` mm deep; if left out, a
+/// tenth of the bead's height. It belongs into `fill.stepover`, with `fill.overlap = "free"`.
+///
+/// # Errors
+/// [`FoundError`] if the profile's process lies outside what was tried, or all valleys are deeper.
+pub fn stepover_learnt(found: &Found, profile: &Profile, deepest: Option<f64>) -> Result<Learnt, FoundError> {
+    let deepest = deepest.unwrap_or(VALLEY * profile.bead.height);
+    let widest = found.widest(deepest, |parameter| set(profile, parameter))?;
+    let after = widest.stepover * profile.bead.width;
+    let Estimate { value, plus_minus } = widest.valley;
+    let mut notes = vec![format!(
+        "valleys of {:.2} ± {plus_minus:.2} mm remain, and {deepest:.2} mm are allowed; the beads are {:.2} ± {:.2} mm high.",
+        value.max(0.0),
+        widest.height.value,
+        widest.height.plus_minus,
+    )];
+    if widest.is_last {
+        notes.push("no wider stepover was tried: wider ones may do as well.".to_owned());
+    }
+    let (rise, height) = (profile.bead().rise(after), profile.layers.height);
+    notes.push(format!(
+        "at this stepover the metal of a bead raises a layer by {rise:.2} mm; layers.height is {height:.2} mm."
+    ));
+    Ok(Learnt {
+        lessons: vec![Lesson { key: "fill.stepover", before: profile.stepover(), after, plus_minus: None }],
+        notes,
+    })
 }
 
 /// The page for the bench: a map of each plate and its trials.

@@ -1,7 +1,7 @@
-//! What filled sheets say of humps, craters and corners over what was varied.
+//! What filled sheets say of valleys between beads, humps, craters and corners over what was varied.
 
 use super::Parameter;
-use super::shape::{CORNER, ENDS};
+use super::shape::{CORNER, ENDS, OVERLAP};
 use super::sheet::{self, Readings, SheetError};
 use crate::bead::library::{Estimate, Input, LibraryError, Measured, Response, Surface, code, grid, t_95};
 
@@ -12,14 +12,16 @@ pub enum Subject {
     Ends,
     /// The metal that piles up at corners.
     Corners,
+    /// The valleys between beads side by side.
+    Overlaps,
 }
 
-/// Fits of what was measured at the starts and ends of beads, or at corners.
+/// Fits of what was measured at the starts and ends of beads, at corners, or of beads side by side.
 pub struct Found {
     /// Which of them.
     pub subject: Subject,
-    /// Names of the two values that are fitted: heights of hump and depths of craters, or the excess height of corners and their
-    /// inner radius, mm.
+    /// Names of the two values that are fitted: heights of humps and depths of craters, the excess height of corners and their
+    /// inner radius, or the depth of the deepest valley and the height of the beads, mm.
     pub names: [&'static str; 2],
     /// How good the fits are.
     pub responses: [Response; 2],
@@ -40,12 +42,27 @@ pub struct Best {
     pub left: [Estimate; 2],
 }
 
+/// The widest stepover whose valleys are shallow enough.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Widest {
+    /// The stepover as a fraction of the bead's width.
+    pub stepover: f64,
+    /// Depth of the deepest valley there, mm.
+    pub valley: Estimate,
+    /// Height of the beads there, mm.
+    pub height: Estimate,
+    /// Whether no wider one was tried.
+    pub is_last: bool,
+}
+
+/// Stepovers that are tried, evenly over the range that was welded.
+const STEPOVERS: u32 = 400;
 /// Times that the grid on which the best settings are sought is made finer about the best so far, and how much.
 const FINER: usize = 3;
 const FACTOR: f64 = 0.1;
 
 impl Found {
-    /// What a sheet says; `None` if it is not one for starts and ends or for corners.
+    /// What a sheet says; `None` if it is not one for starts and ends, for corners or for overlaps.
     ///
     /// # Errors
     /// [`FoundError`] for a cell that is not a number, and for too few trials.
@@ -55,9 +72,14 @@ impl Found {
             return Self::of(&readings, Subject::Ends, names, |cells| [cells[0], cells[2]], [Some(1), Some(3)])
                 .map(Some);
         }
-        let Some(readings) = sheet::readings(text, &CORNER)? else { return Ok(None) };
-        let excess = |cells: &[Option<f64>]| [cells[0].zip(cells[1]).map(|(corner, legs)| corner - legs), cells[2]];
-        Self::of(&readings, Subject::Corners, ["excess height", "inner radius"], excess, [None; 2]).map(Some)
+        if let Some(readings) = sheet::readings(text, &CORNER)? {
+            let excess = |cells: &[Option<f64>]| [cells[0].zip(cells[1]).map(|(corner, legs)| corner - legs), cells[2]];
+            return Self::of(&readings, Subject::Corners, ["excess height", "inner radius"], excess, [None; 2])
+                .map(Some);
+        }
+        let Some(readings) = sheet::readings(text, &OVERLAP[1..])? else { return Ok(None) };
+        let names = ["deepest valley", "height"];
+        Self::of(&readings, Subject::Overlaps, names, |cells| [cells[1], cells[0]], [None; 2]).map(Some)
     }
 
     /// `values` takes the two fitted values from the cells of a trial, which counts if it has both; `lengths` are the columns with
@@ -124,13 +146,7 @@ impl Found {
     /// [`FoundError::Library`] if a nominal value lies outside the range that was tried.
     pub fn best(&self, nominal: impl Fn(Parameter) -> Option<f64>) -> Result<Best, FoundError> {
         let inputs = &self.surface.measured.inputs;
-        let mut fixed = vec![None; inputs.len()];
-        for (k, (input, factor)) in inputs.iter().zip(&self.factors).enumerate() {
-            if let Some(value) = nominal(*factor).filter(|_| !is_of_ends(*factor)) {
-                input.check(value)?;
-                fixed[k] = Some(code(&inputs[k..=k], &[value])[0]);
-            }
-        }
+        let fixed = self.fixed(|factor| nominal(factor).filter(|_| !is_of_ends(factor)))?;
         let place = |free: &[f64]| -> Vec<f64> {
             let mut free = free.iter().copied();
             fixed.iter().map(|own| own.unwrap_or_else(|| free.next().unwrap_or_default())).collect()
@@ -155,6 +171,40 @@ impl Found {
         let varied = self.factors.iter().zip(inputs).zip(&coded);
         let settings = varied.map(|((factor, input), own)| (*factor, input.value(*own)));
         Ok(Best { settings: settings.filter(|(factor, _)| is_of_ends(*factor)).collect(), left })
+    }
+
+    /// The widest stepover, within what was tried, whose deepest valley is expected to be at most `deepest` mm deep; what else was
+    /// varied has the value that `nominal` gives.
+    ///
+    /// # Errors
+    /// [`FoundError`] if the stepover was not varied, a nominal value lies outside the range that was tried, or all valleys are
+    /// deeper.
+    pub fn widest(&self, deepest: f64, nominal: impl Fn(Parameter) -> Option<f64>) -> Result<Widest, FoundError> {
+        let place = self.factors.iter().position(|factor| *factor == Parameter::Stepover);
+        let place = place.ok_or(FoundError::Stepover)?;
+        let fixed = self.fixed(nominal)?;
+        let along = |step: u32| {
+            let mut coded: Vec<f64> = fixed.iter().map(|own| own.unwrap_or_default()).collect();
+            coded[place] = 1.0 - 2.0 * f64::from(step) / f64::from(STEPOVERS);
+            let [valley, height] = self.at(&coded)?;
+            let stepover = self.surface.measured.inputs[place].value(coded[place]);
+            Some(Widest { stepover, valley, height, is_last: step == 0 })
+        };
+        let all: Vec<Widest> = (0..=STEPOVERS).filter_map(along).collect();
+        let least = all.iter().map(|own| own.valley.value).min_by(f64::total_cmp).ok_or(FoundError::Unlike)?;
+        all.into_iter().find(|own| own.valley.value <= deepest).ok_or(FoundError::Valleys { least, deepest })
+    }
+
+    /// The values that factors are held at, coded; `None` for those that are sought.
+    fn fixed(&self, nominal: impl Fn(Parameter) -> Option<f64>) -> Result<Vec<Option<f64>>, FoundError> {
+        let held = |(input, factor): (&Input, &Parameter)| match nominal(*factor) {
+            Some(value) => {
+                input.check(value)?;
+                Ok(Some(code(std::slice::from_ref(input), &[value])[0]))
+            }
+            None => Ok(None),
+        };
+        self.surface.measured.inputs.iter().zip(&self.factors).map(held).collect()
     }
 
     fn at(&self, coded: &[f64]) -> Option<[Estimate; 2]> {
@@ -186,7 +236,7 @@ fn mean(values: Vec<f64>) -> Option<Estimate> {
     }
 }
 
-/// Why a sheet says nothing of starts, ends or corners.
+/// Why a sheet says nothing of starts, ends, corners or overlaps.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FoundError {
     /// No sheet, or one with a cell that is not a number.
@@ -198,6 +248,20 @@ pub enum FoundError {
     /// Nothing was filled in.
     #[error("no trial has both {} and {} yet: fill them in, with 0 where there is none.", .0[0], .0[1])]
     Empty([&'static str; 2]),
+    /// Beads side by side at one distance only.
+    #[error("the stepover was not varied: weld beads side by side with --vary stepover=MIN..MAX.")]
+    Stepover,
+    /// Beads too far apart.
+    #[error(
+        "the shallowest valley is {least:.2} mm deep, and {deepest:.2} mm are allowed: weld beads closer together, or allow deeper \
+         valleys (--valley)."
+    )]
+    Valleys {
+        /// Depth of the shallowest valley, mm.
+        least: f64,
+        /// The depth that is allowed, mm.
+        deepest: f64,
+    },
     /// A point between trials that are too far apart.
     #[error("the process of the profile is too far from all trials together: weld some with it.")]
     Unlike,

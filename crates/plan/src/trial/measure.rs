@@ -1,23 +1,76 @@
 //! Beads measured in a scan of the plate, in place of callipers.
 
+use super::shape::{ENDS, OVERLAP};
 use crate::bead::library::Factored;
 use glam::{DVec2, DVec3};
 
-/// What a scan says of a bead.
+/// What a scan says of a bead, or of beads side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeadSize {
-    /// Width at the foot, mm: mean over its middle.
+    /// Width at the foot, mm: mean over the middle of the length.
     pub width: f64,
-    /// Height of the crown above the plate, mm: mean over its middle.
+    /// Height of the crown above the plate, mm: mean over the middle of the length, and over the beads.
     pub height: f64,
-    /// Standard deviation of the width along the bead, mm.
-    pub width_varies: f64,
-    /// Standard deviation of the height along the bead, mm.
-    pub height_varies: f64,
+    /// What only one bead by itself, or beads side by side, show.
+    pub more: More,
+}
+
+/// What a scan says of one bead, or of beads side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum More {
+    /// Of one bead.
+    One {
+        /// Standard deviation of the width along the bead, mm.
+        width_varies: f64,
+        /// Standard deviation of the height along the bead, mm.
+        height_varies: f64,
+        /// How much higher it begins.
+        hump: Slope,
+        /// How much lower it ends.
+        crater: Slope,
+    },
+    /// Of beads side by side.
+    Beside {
+        /// Depth of the deepest valley below the crowns on both of its sides, mm.
+        valley: f64,
+    },
+}
+
+/// How much higher or lower a bead is at its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slope {
+    /// The difference at the very end, mm.
+    pub height: f64,
+    /// Length over which it fades evenly, mm; `None` if it is too small to be told from the rest of the bead.
+    pub length: Option<f64>,
+}
+
+impl BeadSize {
+    /// Columns of the sheet, with what goes into them.
+    pub(super) fn cells(&self) -> Vec<(&'static str, f64)> {
+        let size = [(OVERLAP[0], Some(self.width)), (OVERLAP[1], Some(self.height))].into_iter();
+        let cells: Vec<(&'static str, Option<f64>)> = match self.more {
+            More::Beside { valley } => size.chain([(OVERLAP[2], Some(valley))]).collect(),
+            More::One { hump, crater, .. } => {
+                let ends = [Some(hump.height), hump.length, Some(crater.height), crater.length];
+                size.chain(ENDS[2..].iter().copied().zip(ends)).collect()
+            }
+        };
+        cells.into_iter().filter_map(|(column, value)| Some((column, value?))).collect()
+    }
 }
 
 /// Where starts and craters are left out: this fraction of the length at both ends.
-const ENDS: f64 = 0.2;
+const LEFT_OUT: f64 = 0.2;
+/// Humps and craters are sought up to this fraction of the length.
+const FADED: f64 = 0.45;
+/// Lengths of humps and craters that are tried.
+const LENGTHS: usize = 40;
+/// A hump or crater has a length if it is this many times as high as its standard error.
+const SEEN: f64 = 3.0;
+/// Places across a stepover at which the heights of beads side by side are averaged, and how many of them need points.
+const ACROSS: f64 = 24.0;
+const ACROSS_LEAST: f64 = 5.0;
 /// Length of a slice across the bead, mm, and the points that it needs.
 const SLICE: f64 = 2.0;
 const POINTS: usize = 12;
@@ -32,43 +85,145 @@ const CROWN: f64 = 0.1;
 const OUTLYING: f64 = 2.5;
 const FITS: usize = 8;
 
-/// The sizes of straight beads, each from one place to another on the plate (mm), in a scan of it (mm); `reach` is the
-/// distance from a bead's middle up to which it may lie, mm. `None` where the scan does not show a bead.
+/// The sizes of trials in a scan of the plate (mm): each a straight bead, or several side by side, from one place to another on the
+/// plate (mm); `reach` is the distance from a bead's middle up to which it may lie, mm. `None` where the scan does not show it.
 ///
 /// # Errors
 /// [`MeasureError`] if the scan shows no bare plate.
-pub fn measured(scan: &[DVec3], beads: &[[DVec2; 2]], reach: f64) -> Result<Vec<Option<BeadSize>>, MeasureError> {
+pub fn measured(scan: &[DVec3], trials: &[Vec<[DVec2; 2]>], reach: f64) -> Result<Vec<Option<BeadSize>>, MeasureError> {
     let bare = |p: &&DVec3| {
-        beads
-            .iter()
-            .all(|[from, to]| planar::polyline::distance_squared_to_segment(p.truncate(), *from, *to) > reach * reach)
+        let near = |[from, to]: &[DVec2; 2]| {
+            planar::polyline::distance_squared_to_segment(p.truncate(), *from, *to) <= reach * reach
+        };
+        !trials.iter().flatten().any(near)
     };
     let plate = Plane::fitted(&scan.iter().filter(bare).copied().collect::<Vec<_>>()).ok_or(MeasureError::NoPlate)?;
-    Ok(beads.iter().map(|bead| size(scan, *bead, reach, &plate)).collect())
+    let size = |trial: &Vec<[DVec2; 2]>| match &trial[..] {
+        [bead] => one(scan, *bead, reach, &plate),
+        beads => beside(scan, beads, reach, &plate),
+    };
+    Ok(trials.iter().map(size).collect())
 }
 
-fn size(scan: &[DVec3], [from, to]: [DVec2; 2], reach: f64, plate: &Plane) -> Option<BeadSize> {
-    let (length, along) = (from.distance(to), (to - from).normalize_or_zero());
-    let count = ((1.0 - 2.0 * ENDS) * length / SLICE).floor().max(1.0) as usize;
-    let mut slices: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
-    for p in scan {
+/// Points of a scan seen along a bead: how far along, how far to its left, and how far above the plate, mm.
+fn along(scan: &[DVec3], [from, to]: [DVec2; 2], plate: &Plane) -> impl Iterator<Item = DVec3> {
+    let direction = (to - from).normalize_or_zero();
+    scan.iter().map(move |p| {
         let by = p.truncate() - from;
-        let (at, across) = (along.dot(by) - ENDS * length, along.perp_dot(by));
-        let slice = (at / SLICE).floor();
-        if (0.0..count as f64).contains(&slice) && across.abs() <= reach {
-            slices[slice as usize].push((across, p.z - plate.height(p.truncate())));
+        DVec3::new(direction.dot(by), direction.perp_dot(by), p.z - plate.height(p.truncate()))
+    })
+}
+
+fn one(scan: &[DVec3], bead: [DVec2; 2], reach: f64, plate: &Plane) -> Option<BeadSize> {
+    let length = bead[0].distance(bead[1]);
+    let count = (length / SLICE).floor().max(1.0);
+    let mut slices: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count as usize];
+    for p in along(scan, bead, plate).filter(|p| p.y.abs() <= reach) {
+        let slice = (p.x / length * count).floor();
+        if (0.0..count).contains(&slice) {
+            slices[slice as usize].push((p.y, p.z));
         }
     }
-    let sizes: Vec<(f64, f64)> = slices.iter_mut().filter_map(|slice| section(slice, plate.noise)).collect();
-    (sizes.len() >= SLICES).then(|| {
-        let spread = |of: fn(&(f64, f64)) -> f64| {
-            let mean = sizes.iter().map(of).sum::<f64>() / sizes.len() as f64;
-            let square = sizes.iter().map(|size| (of(size) - mean).powi(2)).sum::<f64>();
-            (mean, (square / (sizes.len() - 1) as f64).sqrt())
-        };
-        let ((width, width_varies), (height, height_varies)) = (spread(|size| size.0), spread(|size| size.1));
-        BeadSize { width, height, width_varies, height_varies }
-    })
+    let places = (0..).map(|slice| (f64::from(slice) + 0.5) * length / count);
+    let sizes: Vec<(f64, (f64, f64))> =
+        places.zip(&mut slices).filter_map(|(at, slice)| Some((at, section(slice, plate.noise)?))).collect();
+    let middle = LEFT_OUT * length..(1.0 - LEFT_OUT) * length;
+    let middle: Vec<(f64, f64)> = sizes.iter().filter(|(at, _)| middle.contains(at)).map(|(_, size)| *size).collect();
+    if middle.len() < SLICES {
+        return None;
+    }
+    let spread = |of: fn(&(f64, f64)) -> f64| {
+        let mean = middle.iter().map(of).sum::<f64>() / middle.len() as f64;
+        let square = middle.iter().map(|size| (of(size) - mean).powi(2)).sum::<f64>();
+        (mean, (square / (middle.len() - 1) as f64).sqrt())
+    };
+    let ((width, width_varies), (height, height_varies)) = (spread(|size| size.0), spread(|size| size.1));
+    let crowns: Vec<(f64, f64)> = sizes.iter().map(|(at, (_, height))| (*at, *height)).collect();
+    let [hump, crater] = ends(&crowns, length)?;
+    Some(BeadSize { width, height, more: More::One { width_varies, height_varies, hump, crater } })
+}
+
+/// Hump and crater of a bead of this length (mm) with crowns at these places along it (mm): even slopes, as the deposit model lays
+/// them, that with a level bead between come nearest to all crowns (least squares).
+fn ends(crowns: &[(f64, f64)], length: f64) -> Option<[Slope; 2]> {
+    let heights: Vec<f64> = crowns.iter().map(|(_, height)| *height).collect();
+    let slope = |over: f64, from: &dyn Fn(f64) -> f64| -> Vec<f64> {
+        crowns.iter().map(|(at, _)| (1.0 - from(*at) / over).max(0.0)).collect()
+    };
+    let lengths = || {
+        let (least, most) = (2.0 * SLICE, FADED * length);
+        (0..LENGTHS).map(move |k| least + (most - least) * k as f64 / (LENGTHS - 1) as f64)
+    };
+    let fit = |[over_hump, over_crater]: [f64; 2]| {
+        let columns = [vec![1.0; crowns.len()], slope(over_hump, &|at| at), slope(over_crater, &|at| length - at)];
+        let [level, hump, crater] = Factored::new(&columns).solve(&heights)[..] else { return None };
+        let miss = |k: usize| heights[k] - level - hump * columns[1][k] - crater * columns[2][k];
+        let missed = (0..crowns.len()).map(|k| miss(k).powi(2)).sum::<f64>();
+        Some((missed, [(hump, over_hump), (-crater, over_crater)]))
+    };
+    let all = lengths().flat_map(|hump| lengths().map(move |crater| [hump, crater]));
+    let (missed, slopes) = all.filter_map(fit).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let scatter = (missed / crowns.len().saturating_sub(3).max(1) as f64).sqrt();
+    let slope = |(height, over): (f64, f64)| {
+        // The mean square of a slope that falls from 1 to 0 is a third.
+        let error = scatter * (3.0 * length / over / crowns.len() as f64).sqrt();
+        Slope { height, length: (height > SEEN * error).then_some(over) }
+    };
+    Some(slopes.map(slope))
+}
+
+fn beside(scan: &[DVec3], beads: &[[DVec2; 2]], reach: f64, plate: &Plane) -> Option<BeadSize> {
+    let bead = *beads.first()?;
+    let length = bead[0].distance(bead[1]);
+    let direction = (bead[1] - bead[0]).normalize_or_zero();
+    let mut lines: Vec<f64> = beads.iter().map(|[from, _]| direction.perp_dot(*from - bead[0])).collect();
+    lines.sort_by(f64::total_cmp);
+    let stepover = lines.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    let (low, high) = (lines[0] - reach, lines[lines.len() - 1] + reach);
+    let middle = LEFT_OUT * length..(1.0 - LEFT_OUT) * length;
+    let points = along(scan, bead, plate).filter(|p| middle.contains(&p.x) && (low..high).contains(&p.y));
+    let heights = averaged(points, low, high, stepover / ACROSS);
+    // The crown of each bead, within half a stepover of where it was planned.
+    let near = |line: f64| heights.iter().filter(move |(at, _)| (at - line).abs() <= 0.5 * stepover);
+    if lines.iter().any(|line| (near(*line).count() as f64) < ACROSS_LEAST) {
+        return None;
+    }
+    let highest = |line: &f64| near(*line).copied().max_by(|a, b| a.1.total_cmp(&b.1));
+    let crowns: Vec<(f64, f64)> = lines.iter().filter_map(highest).collect();
+    let height = crowns.iter().map(|crown| crown.1).sum::<f64>() / crowns.len() as f64;
+    if height < 4.0 * plate.noise || height <= 0.0 {
+        return None;
+    }
+    let valley = |pair: &[(f64, f64)]| {
+        let (a, b) = (pair[0], pair[1]);
+        // Below a straight edge across both crowns.
+        let below = |(at, own): &(f64, f64)| a.1 + (b.1 - a.1) * (at - a.0) / (b.0 - a.0).max(1e-9) - own;
+        heights.iter().filter(|(at, _)| (a.0..=b.0).contains(at)).map(below).fold(0.0, f64::max)
+    };
+    let foot = FOOT * height;
+    let up = |(_, own): &(f64, f64)| *own >= foot;
+    let first = heights.iter().position(up)?;
+    let last = heights.iter().rposition(up)?;
+    let left = crossing(heights[first], *heights.get(first.checked_sub(1)?)?, foot);
+    let right = crossing(heights[last], *heights.get(last + 1)?, foot);
+    // From a crown to the foot, and along a parabola to the plate.
+    let half = |(at, top): (f64, f64), edge: f64| (edge - at).abs() / (1.0 - foot / top).max(0.1).sqrt();
+    let outer = [crowns[0], crowns[crowns.len() - 1]];
+    let width = outer[1].0 - outer[0].0 + half(outer[0], left) + half(outer[1], right);
+    let valley = crowns.windows(2).map(valley).fold(0.0, f64::max);
+    Some(BeadSize { width, height, more: More::Beside { valley } })
+}
+
+/// Mean heights of points along a bead, with the places to its left, mm; places without enough points are left out.
+fn averaged(points: impl Iterator<Item = DVec3>, low: f64, high: f64, step: f64) -> Vec<(f64, f64)> {
+    let count = ((high - low) / step).ceil().max(1.0) as usize;
+    let mut sums = vec![(0, 0.0, 0.0); count];
+    for p in points {
+        let sum = &mut sums[(((p.y - low) / step) as usize).min(count - 1)];
+        *sum = (sum.0 + 1, sum.1 + p.y, sum.2 + p.z);
+    }
+    let mean = |(number, at, height): (usize, f64, f64)| (at / number as f64, height / number as f64);
+    sums.into_iter().filter(|sum| sum.0 >= POINTS).map(mean).collect()
 }
 
 /// Width and height, mm, of a section of points across the bead and above the plate; `None` if it does not show a bead.
@@ -87,13 +242,14 @@ fn section(points: &mut [(f64, f64)], noise: f64) -> Option<(f64, f64)> {
     let low = FOOT * rough;
     let right = points[top..].iter().position(|p| p.1 < low)? + top;
     let left = points[..top].iter().rposition(|p| p.1 < low)?;
-    // Between two points the surface is straight.
-    let foot = |inner: (f64, f64), outer: (f64, f64)| {
-        inner.0 + (outer.0 - inner.0) * (inner.1 - low) / (inner.1 - outer.1).max(1e-9)
-    };
-    let (a, b) = (foot(points[left + 1], points[left]), foot(points[right - 1], points[right]));
+    let (a, b) = (crossing(points[left + 1], points[left], low), crossing(points[right - 1], points[right], low));
     let height = crown(&points[left + 1..right])?;
     Some(((b - a) / (1.0 - low / height).max(0.1).sqrt(), height))
+}
+
+/// Where a surface that is straight between two points, the inner of them higher, has this height.
+fn crossing(inner: (f64, f64), outer: (f64, f64), height: f64) -> f64 {
+    inner.0 + (outer.0 - inner.0) * (inner.1 - height) / (inner.1 - outer.1).max(1e-9)
 }
 
 /// The top of a parabola through the upper half of a section (least squares).

@@ -12,7 +12,7 @@
 //! | `digits` | numbers as strokes |
 //! | `plate` | where everything lies on the plates, as layers |
 //! | `sheet` | the table to fill in |
-//! | `found` | humps, craters and corners over what was varied |
+//! | `found` | valleys between beads, humps, craters and corners over what was varied |
 //! | `measure` | beads measured in a scan of the plate |
 
 mod design;
@@ -26,8 +26,8 @@ mod sheet;
 
 pub use design::{Design, points};
 pub use factor::{Factor, FactorError, Parameter};
-pub use found::{Best, Found, FoundError, Subject};
-pub use measure::{BeadSize, MeasureError, measured};
+pub use found::{Best, Found, FoundError, Subject, Widest};
+pub use measure::{BeadSize, MeasureError, More, Slope, measured};
 pub use plate::{Layout, Nominal, Placed, Plate, PlateError, Series, Span};
 pub use shape::Shape;
-pub use sheet::{SheetError, TrialWelded, as_measured, csv, filled, plates};
+pub use sheet::{SheetError, TrialWelded, as_measured, csv, filled, plates, trials_on};

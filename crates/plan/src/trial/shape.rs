@@ -22,6 +22,8 @@ pub enum Shape {
 /// lower at the end, and the lengths over which that fades.
 pub(super) const ENDS: [&str; 6] =
     ["width_mm", "height_mm", "hump_height_mm", "hump_length_mm", "crater_depth_mm", "crater_length_mm"];
+/// What is measured of beads side by side.
+pub(super) const OVERLAP: [&str; 3] = ["width_mm", "height_mm", "deepest_valley_mm"];
 /// What is measured at corners.
 pub(super) const CORNER: [&str; 3] = ["height_mm", "height_of_legs_mm", "inner_radius_mm"];
 
@@ -47,7 +49,7 @@ impl Shape {
         match self {
             Self::Bead => &["width_mm", "height_mm"],
             Self::Ends => &ENDS,
-            Self::Overlap(_) => &["width_mm", "height_mm", "deepest_valley_mm"],
+            Self::Overlap(_) => &OVERLAP,
             Self::Wall(_) => &["height_mm", "width_mm"],
             Self::Corner => &CORNER,
         }

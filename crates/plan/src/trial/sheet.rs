@@ -40,17 +40,14 @@ fn joined(cells: Vec<String>) -> String {
     cells.join(",") + "\n"
 }
 
-/// The sheet with the width and height of the beads of plate `plate` (from 1), in the order of welding, filled in; beads
+/// The sheet with what a scan shows of the trials of plate `plate` (from 1), in the order of welding, filled in; trials
 /// without a size keep their cells.
 ///
 /// # Errors
 /// [`SheetError`] if the text is no sheet of trials, or has another number of trials on that plate.
 pub fn filled(sheet: &str, plate: usize, sizes: &[Option<BeadSize>]) -> Result<String, SheetError> {
-    let size = |size: &Option<BeadSize>| {
-        let cells = |size: BeadSize| vec![("width_mm", size.width), ("height_mm", size.height)];
-        size.map(cells).unwrap_or_default()
-    };
-    with_cells(sheet, plate, &sizes.iter().map(size).collect::<Vec<_>>())
+    let cells = |size: &Option<BeadSize>| size.map(|size| size.cells()).unwrap_or_default();
+    with_cells(sheet, plate, &sizes.iter().map(cells).collect::<Vec<_>>())
 }
 
 /// How a trial was welded, where that was measured.
@@ -93,6 +90,16 @@ pub fn plates(sheet: &str) -> Result<usize, SheetError> {
     let plate = table.plate()?;
     let number = |(_, cells): &(usize, Vec<String>)| cells.get(plate)?.parse().ok();
     Ok(table.rows.iter().filter_map(number).max().unwrap_or(0))
+}
+
+/// The number of trials of a sheet that are welded on plate `plate`, from 1.
+///
+/// # Errors
+/// [`SheetError`] if the text is no sheet of trials.
+pub fn trials_on(sheet: &str, plate: usize) -> Result<usize, SheetError> {
+    let table = Table::of(sheet)?;
+    let column = table.plate()?;
+    Ok(table.on_plate(column, plate).count())
 }
 
 /// What was measured with the trials of a sheet.
@@ -149,6 +156,11 @@ impl Table {
         self.columns.iter().position(|own| own == name)
     }
 
+    /// The lines of a plate, given the column with the plates.
+    fn on_plate(&self, column: usize, plate: usize) -> impl Iterator<Item = &(usize, Vec<String>)> {
+        self.rows.iter().filter(move |(_, cells)| cells.get(column).is_some_and(|own| own.parse() == Ok(plate)))
+    }
+
     /// The column with the plates, of a sheet for beads.
     fn plate(&self) -> Result<usize, SheetError> {
         let missing = |name: &'static str| self.column(name).ok_or(SheetError::Column(name));
@@ -160,10 +172,8 @@ impl Table {
 /// The sheet with other numbers in some columns of the trials of a plate; columns that it lacks are left out.
 fn with_cells(sheet: &str, plate: usize, trials: &[Vec<(&'static str, f64)>]) -> Result<String, SheetError> {
     let table = Table::of(sheet)?;
-    let plates = table.plate()?;
-    let Table { between, columns, mut rows } = table;
-    let column = |name: &str| columns.iter().position(|own| own == name);
-    rows.retain(|(_, cells)| cells.get(plates).is_some_and(|own| own.parse() == Ok(plate)));
+    let rows: Vec<&(usize, Vec<String>)> = table.on_plate(table.plate()?, plate).collect();
+    let (between, columns) = (table.between, &table.columns);
     if rows.len() != trials.len() {
         return Err(SheetError::Count { plate, sheet: rows.len(), plan: trials.len() });
     }
@@ -175,11 +185,12 @@ fn with_cells(sheet: &str, plate: usize, trials: &[Vec<(&'static str, f64)>]) ->
     let quoted = |cell: &String| {
         if cell.contains([between, '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.clone() }
     };
-    for ((number, mut cells), changed) in rows.into_iter().zip(trials).filter(|(_, changed)| !changed.is_empty()) {
+    for ((number, cells), changed) in rows.into_iter().zip(trials).filter(|(_, changed)| !changed.is_empty()) {
+        let mut cells = cells.clone();
         cells.resize(columns.len().max(cells.len()), String::new());
-        let placed = changed.iter().filter_map(|(name, value)| Some((column(name)?, *value)));
+        let placed = changed.iter().filter_map(|(name, value)| Some((table.column(name)?, *value)));
         placed.for_each(|(place, value)| cells[place] = decimal(value));
-        text[number] = cells.iter().map(quoted).collect::<Vec<_>>().join(&between.to_string());
+        text[*number] = cells.iter().map(quoted).collect::<Vec<_>>().join(&between.to_string());
     }
     Ok(text.join("\n") + "\n")
 }

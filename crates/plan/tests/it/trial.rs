@@ -4,7 +4,8 @@ use bead_plan::bead::library::{BeadLibrary, Columns, Measured};
 use bead_plan::process::StartStop;
 use bead_plan::random::Random;
 use bead_plan::trial::{
-    self, BeadSize, Design, Factor, Found, Layout, Nominal, Parameter, Plate, Series, Shape, Subject, points,
+    self, BeadSize, Design, Factor, Found, Layout, More, Nominal, Parameter, Plate, Series, Shape, Slope, Subject,
+    points,
 };
 use glam::DVec3;
 use planar::DVec2;
@@ -409,7 +410,8 @@ fn beads_in_a_scan_have_the_size_that_they_were_made_with() {
                 let z = 12.0 + 0.004 * at.x - 0.003 * at.y + bead + noise * random.normal();
                 scan.push(DVec3::new(at.x, at.y, z));
             }
-            let found = trial::measured(&scan, &beads, 8.0).unwrap();
+            let trials: Vec<_> = beads.iter().map(|bead| vec![*bead]).collect();
+            let found = trial::measured(&scan, &trials, 8.0).unwrap();
             for (size, (width, height)) in found.iter().zip(sizes) {
                 let size = size.unwrap();
                 assert!((size.width / width - 1.0).abs() < most, "{noise} {degrees}: {size:?} {width}");
@@ -418,14 +420,134 @@ fn beads_in_a_scan_have_the_size_that_they_were_made_with() {
             assert_eq!(found.last().unwrap(), &None, "{noise} {degrees}");
         }
     }
-    assert!(trial::measured(&[], &[[DVec2::ZERO, DVec2::X]], 5.0).is_err());
+    assert!(trial::measured(&[], &[vec![[DVec2::ZERO, DVec2::X]]], 5.0).is_err());
+}
+
+/// A scan at this angle of a plate that tilts, with points half a millimetre apart; `height` is that of the beads above a place.
+fn scanned(degrees: f64, noise: f64, random: &mut Random, height: impl Fn(DVec2) -> f64) -> Vec<DVec3> {
+    let turn = DVec2::from_angle(degrees.to_radians());
+    let mut scan = Vec::new();
+    for (i, j) in (0..280).flat_map(|i| (0..200).map(move |j| (i, j))) {
+        let flat = DVec2::new(-25.0 + 0.5 * f64::from(i), -40.0 + 0.5 * f64::from(j));
+        let at = turn.rotate(flat);
+        let z = 3.0 - 0.002 * at.x + 0.004 * at.y + height(flat) + noise * random.normal();
+        scan.push(DVec3::new(at.x, at.y, z));
+    }
+    scan
+}
+
+/// Across a bead of this width (mm), its height as a fraction of that of the crown.
+fn across(y: f64, width: f64) -> f64 {
+    (1.0 - (2.0 * y / width).powi(2)).max(0.0)
+}
+
+/// A bead with a hump and a crater that fade evenly, or with neither, at any angle and with noise.
+#[test]
+fn humps_and_craters_in_a_scan_are_as_high_and_as_long_as_they_were_made() {
+    let mut random = Random::new(9);
+    let slope = |from: f64, height: f64, length: f64| height * (1.0 - from / length).max(0.0);
+    for (noise, most) in [(0.0, 0.03), (0.05, 0.1), (0.1, 0.15)] {
+        for degrees in [0.0_f64, 37.0, 90.0, 211.0] {
+            let turn = DVec2::from_angle(degrees.to_radians());
+            let bead = [0.0, 90.0].map(|x| turn.rotate(DVec2::new(x, 0.0)));
+            let seen = |hump: [f64; 2], crater: [f64; 2], random: &mut Random| {
+                let height = |p: DVec2| {
+                    let ends = slope(p.x, hump[0], hump[1]) - slope(90.0 - p.x, crater[0], crater[1]);
+                    if (0.0..=90.0).contains(&p.x) { (2.0 + ends) * across(p.y - 0.4, 6.0) } else { 0.0 }
+                };
+                let scan = scanned(degrees, noise, random, height);
+                match trial::measured(&scan, &[vec![bead]], 8.0).unwrap()[0].unwrap().more {
+                    More::One { hump, crater, .. } => [hump, crater],
+                    More::Beside { .. } => panic!("one bead was welded"),
+                }
+            };
+            let [hump, crater] = seen([0.8, 9.0], [1.1, 24.0], &mut random);
+            let case = format!("{noise} {degrees}: {hump:?} {crater:?}");
+            assert!((hump.height - 0.8).abs() < most && (crater.height - 1.1).abs() < most, "{case}");
+            assert!((hump.length.unwrap() - 9.0).abs() < 2.5 && (crater.length.unwrap() - 24.0).abs() < 2.5, "{case}");
+            let [hump, crater] = seen([0.0, 1.0], [0.0, 1.0], &mut random);
+            assert!(hump.height.abs() < most && crater.height.abs() < most, "{noise} {degrees}: {hump:?} {crater:?}");
+        }
+    }
+}
+
+/// Three beads whose valleys are filled up to a known depth.
+#[test]
+fn valleys_between_beads_in_a_scan_are_as_deep_as_they_were_made() {
+    let mut random = Random::new(11);
+    for (noise, most) in [(0.0, 0.04), (0.05, 0.08), (0.1, 0.12)] {
+        for degrees in [0.0_f64, 37.0, 90.0, 211.0] {
+            for (stepover, depth) in [(4.0, 0.15), (4.8, 0.5), (5.7, 1.2)] {
+                let turn = DVec2::from_angle(degrees.to_radians());
+                let lines = [0.0, 1.0, 2.0].map(|k| [0.0, 90.0].map(|x| turn.rotate(DVec2::new(x, k * stepover))));
+                let height = |p: DVec2| {
+                    let own = |k: f64| 2.2 * across(p.y - 0.3 - k * stepover, 6.0);
+                    let floor = if (0.0..2.0 * stepover).contains(&(p.y - 0.3)) { 2.2 - depth } else { 0.0 };
+                    let highest = [0.0, 1.0, 2.0].map(own).into_iter().fold(floor, f64::max);
+                    if (0.0..=90.0).contains(&p.x) { highest } else { 0.0 }
+                };
+                let scan = scanned(degrees, noise, &mut random, height);
+                let found = trial::measured(&scan, &[lines.to_vec()], 8.0).unwrap();
+                let size = found[0].unwrap();
+                let More::Beside { valley } = size.more else { panic!("three beads were welded") };
+                let case = format!("{noise} {degrees} {stepover}: {size:?}");
+                assert!((valley - depth).abs() < most, "{case}");
+                assert!((size.height - 2.2).abs() < most, "{case}");
+                assert!((size.width - (6.0 + 2.0 * stepover)).abs() < 0.4, "{case}");
+                // What is seen goes into the sheet.
+                let series = series(&["stepover=0.6..0.9"], Shape::Overlap(3), 1, 1);
+                let sheet = trial::csv("t", series.shape, &series.factors, &series.trials, 90.0);
+                assert_eq!(trial::trials_on(&sheet, 1).unwrap(), 3);
+                let filled = trial::filled(&sheet, 1, &[found[0], None, None]).unwrap();
+                assert!(filled.contains(&format!(",{:.2},{:.2},{valley:.2},", size.width, size.height)), "{filled}");
+            }
+        }
+    }
+}
+
+/// Beads whose valleys deepen from nothing at 0.62 of their width by 0.5 mm for each tenth: the widest stepover with valleys of at
+/// most 0.2 mm is 0.66, whatever the noise.
+#[test]
+fn the_widest_stepover_with_shallow_valleys_is_found() {
+    let series = series(&["stepover=0.6..0.8", "deposition_speed=6..10"], Shape::Overlap(3), 3, 5);
+    let sheet = trial::csv("t", series.shape, &series.factors, &series.trials, 90.0);
+    let found = |seed: u64| {
+        let random = &mut Random::new(seed);
+        let rows = sheet.lines().map(|line| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            if let Ok(number) = cells[0].parse::<usize>() {
+                let values = &series.trials[number - 1].values;
+                let valley = 5.0 * (values[0] - 0.62) + 0.04 * random.normal();
+                let own = [14.0, 2.4 - 0.02 * values[1], valley].map(|own| format!("{own:.3}"));
+                cells[6..9].clone_from_slice(&own);
+            }
+            cells.join(",") + "\n"
+        });
+        Found::read(&rows.collect::<String>()).unwrap().unwrap()
+    };
+    let at = |parameter| (parameter == Parameter::DepositionSpeed).then_some(8.0);
+    for seed in 0..20 {
+        let found = found(seed);
+        assert_eq!((found.subject, found.trials()), (Subject::Overlaps, 27));
+        let widest = found.widest(0.2, at).unwrap();
+        assert!((widest.stepover - 0.66).abs() < 0.01 && !widest.is_last, "{seed}: {widest:?}");
+        assert!((widest.height.value - 2.24).abs() < 1e-3 && widest.valley.plus_minus < 0.15, "{seed}: {widest:?}");
+        let widest = found.widest(5.0, at).unwrap();
+        assert!(widest.is_last && (widest.stepover - 0.8).abs() < 1e-9, "{widest:?}");
+    }
+    let said = found(1).widest(-1.0, at).unwrap_err().to_string();
+    assert!(said.contains("weld beads closer together"), "{said}");
+    let said = found(1).widest(0.2, |_| Some(0.7)).unwrap_err().to_string();
+    assert!(said.contains("deposition_speed"), "{said}");
 }
 
 #[test]
 fn a_scan_fills_in_the_lines_of_its_plate_only() {
     let series = series(&["deposition_speed=6..10"], Shape::Bead, 2, 1);
     let sheet = trial::csv("trials", series.shape, &series.factors, &series.trials, 90.0);
-    let size = BeadSize { width: 6.123, height: 2.0, width_varies: 0.1, height_varies: 0.1 };
+    let level = Slope { height: 0.0, length: None };
+    let more = More::One { width_varies: 0.1, height_varies: 0.1, hump: level, crater: level };
+    let size = BeadSize { width: 6.123, height: 2.0, more };
     let filled = trial::filled(&sheet, 2, &[Some(size), None, Some(size)]).unwrap();
     let changed: Vec<usize> =
         sheet.lines().zip(filled.lines()).enumerate().filter(|(_, (a, b))| a != b).map(|(k, _)| k).collect();

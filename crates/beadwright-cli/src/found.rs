@@ -1,14 +1,16 @@
-//! `beadwright bead fit` with the sheet of starts and ends, or of corners: what it says, and what goes into the profile.
+//! `beadwright bead fit` with the sheet of starts and ends, of corners or of overlaps: what it says, and what goes into the profile.
 
 use crate::{profile, say};
 use anyhow::Context;
 use beadwright::bead::library::Estimate;
 use beadwright::files::write_file;
 use beadwright::profile::edit;
-use beadwright::trial::{EndsLearnt, EndsLesson, Found, Subject, ends_learnt};
+use beadwright::trial::{Found, Learnt, Lesson, Subject, ends_learnt, stepover_learnt};
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
+
+const STEPOVER: &str = "fill.stepover";
 
 /// What is wanted of a sheet.
 pub(crate) struct Wanted<'a> {
@@ -16,20 +18,29 @@ pub(crate) struct Wanted<'a> {
     pub(crate) profile: Option<&'a str>,
     /// The profile to write.
     pub(crate) to: Option<&'a Path>,
+    /// Depth of the valleys that may remain between beads, mm.
+    pub(crate) valley: Option<f64>,
     pub(crate) json: bool,
 }
 
-/// Prints what a sheet says and, for starts and ends, writes the profile if it is wanted.
+/// Prints what a sheet says and writes the profile if it is wanted.
 pub(crate) fn run(found: &Found, wanted: &Wanted<'_>) -> anyhow::Result<()> {
+    anyhow::ensure!(
+        wanted.valley.is_none() || found.subject == Subject::Overlaps,
+        "--valley needs a sheet of beads side by side (bead trial --shape overlap)."
+    );
     let learnt = match (found.subject, wanted.profile) {
-        (Subject::Ends, Some(name)) => learn(found, name, wanted)?,
-        (Subject::Ends, None) => {
-            anyhow::ensure!(wanted.to.is_none(), "name the profile with which the beads were welded (-p).");
-            EndsLearnt::default()
-        }
         (Subject::Corners, _) => {
             anyhow::ensure!(wanted.to.is_none(), "no key of a profile holds the metal of corners: leave out --to.");
-            EndsLearnt::default()
+            Learnt::default()
+        }
+        (_, Some(name)) => learn(found, name, wanted)?,
+        (_, None) => {
+            anyhow::ensure!(
+                wanted.to.is_none() && wanted.valley.is_none(),
+                "name the profile with which the beads were welded (-p)."
+            );
+            Learnt::default()
         }
     };
     if wanted.json {
@@ -44,19 +55,28 @@ pub(crate) fn run(found: &Found, wanted: &Wanted<'_>) -> anyhow::Result<()> {
     print(found, &learnt, wanted)
 }
 
-fn learn(found: &Found, name: &str, wanted: &Wanted<'_>) -> anyhow::Result<EndsLearnt> {
-    let learnt = ends_learnt(found, &profile::load(name, &[])?)?;
-    let text = learnt.lessons.iter().try_fold(profile::text(name)?, |text, lesson| {
-        edit::with_value(&text, lesson.key, &format!("{:.3}", lesson.after))
-    })?;
-    profile::parse(&text, &profile::folder(name)).context("the profile with the starts and ends that were measured")?;
+fn learn(found: &Found, name: &str, wanted: &Wanted<'_>) -> anyhow::Result<Learnt> {
+    let profile = profile::load(name, &[])?;
+    let learnt = match found.subject {
+        Subject::Overlaps => stepover_learnt(found, &profile, wanted.valley)?,
+        Subject::Ends | Subject::Corners => ends_learnt(found, &profile)?,
+    };
+    let text = learnt.lessons.iter().try_fold(profile::text(name)?, with_lesson)?;
+    profile::parse(&text, &profile::folder(name)).context("the profile with what the trials say")?;
     if let Some(path) = wanted.to {
         write_file(path, text.as_bytes())?;
     }
     Ok(learnt)
 }
 
-fn print(found: &Found, learnt: &EndsLearnt, wanted: &Wanted<'_>) -> anyhow::Result<()> {
+/// The text of a profile with the value that trials show.
+fn with_lesson(text: String, lesson: &Lesson) -> anyhow::Result<String> {
+    let text = edit::with_value(&text, lesson.key, &format!("{:.3}", lesson.after))?;
+    // A stepover of one's own is no model of overlapping beads.
+    Ok(if lesson.key == STEPOVER { edit::with_value(&text, "fill.overlap", "\"free\"")? } else { text })
+}
+
+fn print(found: &Found, learnt: &Learnt, wanted: &Wanted<'_>) -> anyhow::Result<()> {
     let mut out = say::done(false);
     writeln!(out, "{} trials\n", found.trials())?;
     let heads = found.factors().iter().map(|factor| factor.name()).chain(found.names);
@@ -71,15 +91,15 @@ fn print(found: &Found, learnt: &EndsLearnt, wanted: &Wanted<'_>) -> anyhow::Res
         writeln!(out, "\nNo key of a profile changes the metal of corners: a plan lays them as any other place.")?;
         return Ok(());
     }
+    let ends = found.subject == Subject::Ends;
     if learnt.lessons.is_empty() {
-        writeln!(
-            out,
-            "\n-p PROFILE names the settings with which hump and crater are least; --to FILE.toml writes them"
-        )?;
+        let what =
+            if ends { "settings with which hump and crater are least" } else { "widest stepover with shallow valleys" };
+        writeln!(out, "\n-p PROFILE names the {what}; --to FILE.toml writes it")?;
         return Ok(());
     }
-    writeln!(out, "\nleast hump and crater:\n")?;
-    for EndsLesson { key, before, after, plus_minus } in &learnt.lessons {
+    writeln!(out, "\n{}:\n", if ends { "least hump and crater" } else { "widest stepover with shallow valleys" })?;
+    for Lesson { key, before, after, plus_minus } in &learnt.lessons {
         let within =
             plus_minus.filter(|within| within.is_finite()).map_or(String::new(), |within| format!(" ± {within:.3}"));
         writeln!(out, "  {key:<28} {before:>8.3} → {after:.3}{within}")?;
