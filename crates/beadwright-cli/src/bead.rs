@@ -1,6 +1,6 @@
 //! `beadwright bead`: a library of measured beads, and the parameters for a wanted one.
 
-use crate::profile;
+use crate::{file, profile};
 use anyhow::Context;
 use beadwright::bead::library::demonstration_csv;
 use beadwright::bead::library::printed_rows;
@@ -24,7 +24,7 @@ pub(crate) enum Command {
     /// Measure the beads of a trial in a scan of its plate, and fill in the sheet.
     Measure(crate::trial::Measure),
     /// Fit the width and height of measured single beads, and write the library.
-    Fit(Fit),
+    Fit(Box<Fit>),
     /// Predict the bead for given parameters.
     Predict(Predict),
     /// Find the parameters for a wanted bead within the measured range.
@@ -217,7 +217,7 @@ fn walls(arguments: &Walls) -> anyhow::Result<()> {
     let named = ["dwell", "length", "layers"].map(str::to_owned).to_vec();
     let columns = Columns { inputs: Some(named), width: None, height: None };
     let place = || arguments.data.display().to_string();
-    let measured = Measured::read(&read(&arguments.data)?, &columns).with_context(place)?;
+    let measured = Measured::read(&file::text(&arguments.data)?, &columns).with_context(place)?;
     for (input, unit) in measured.inputs.iter().zip(["s", "mm", ""]) {
         anyhow::ensure!(
             input.unit == unit,
@@ -313,11 +313,12 @@ fn fit(arguments: &Fit) -> anyhow::Result<()> {
             json: arguments.json,
         });
     };
-    let text = crate::learn::into_sheet(&read(data)?, &arguments.from)?;
+    let text = crate::learn::into_sheet(&file::text(data)?, &arguments.from)?;
     if let Some(found) = Found::read(&text).with_context(|| data.display().to_string())? {
         anyhow::ensure!(
-            arguments.want.is_none(),
-            "--want needs a sheet of single beads: this one is of starts and ends, of corners, or of beads side by side."
+            arguments.want.is_none() && arguments.plot.is_none() && arguments.inputs.is_none(),
+            "--want, --plot and --inputs need a sheet of single beads: this one is of starts and ends, of corners, or of beads side \
+             by side."
         );
         let (profile, to) = (arguments.profile.as_deref(), arguments.to.as_deref());
         let wanted = crate::found::Wanted { profile, to, valley: arguments.valley, json: arguments.json };
@@ -340,7 +341,8 @@ fn fit(arguments: &Fit) -> anyhow::Result<()> {
     let measured = Measured::read(&text, &columns).with_context(|| data.display().to_string())?;
     let library = BeadLibrary::fit(&measured).with_context(|| data.display().to_string())?;
     let recipe = arguments.want.map(|want| wanted(arguments, &library, want)).transpose()?;
-    let profile = recipe.as_ref().map(|recipe| with_recipe(arguments, &library, recipe)).transpose()?;
+    let in_profile = recipe.as_ref().filter(|_| goes_into_profile);
+    let profile = in_profile.map(|recipe| with_recipe(arguments, &library, recipe)).transpose()?;
     write_file(&arguments.output, library.to_toml().as_bytes())?;
     if let (Some(path), Some(text)) = (&arguments.to, &profile) {
         write_file(path, text.as_bytes())?;
@@ -391,7 +393,7 @@ fn fit(arguments: &Fit) -> anyhow::Result<()> {
 }
 
 fn check_table(arguments: &CheckTable) -> anyhow::Result<()> {
-    let rows = printed_rows(&read(&arguments.data)?).with_context(|| arguments.data.display().to_string())?;
+    let rows = printed_rows(&file::text(&arguments.data)?).with_context(|| arguments.data.display().to_string())?;
     let mut out = std::io::stdout().lock();
     if arguments.json {
         let row = |row: &PrintedRow| json!({ "area_mm2": row.area, "metal_mm3_per_a_s": row.metal, "others_mm3_per_a_s": row.others, "contradicts": row.contradicts() });
@@ -487,8 +489,13 @@ fn with_recipe(arguments: &Fit, library: &BeadLibrary, recipe: &Recipe) -> anyho
     let inputs = library.inputs.iter().zip(&recipe.values);
     let process = inputs.filter_map(|(input, value)| Some((key(&input.name)?, *value)));
     let name = arguments.profile.as_deref().unwrap_or(profile::USUAL);
+    let weaves = profile::load(name, &[])?.weave.is_some();
     let mut text = profile::text(name)?;
     for (key, value) in process.chain(lengths) {
+        anyhow::ensure!(
+            weaves || !key.starts_with("weave."),
+            "the trials vary {key}, and {name} does not weave: name the profile with which they were welded (-p)."
+        );
         text = edit::with_value(&text, key, &format!("{value:.3}"))?;
     }
     profile::parse(&text, &profile::folder(name)).context("the profile with the wanted bead")?;
@@ -522,15 +529,8 @@ fn warn(out: &mut impl Write, library: &BeadLibrary) -> std::io::Result<()> {
     Ok(())
 }
 
-fn read(path: &Path) -> anyhow::Result<String> {
-    let bytes = crate::file::read(path)?;
-    String::from_utf8(bytes)
-        .ok()
-        .with_context(|| format!("{} is not UTF-8 text: save it as CSV in UTF-8", path.display()))
-}
-
 fn load(path: &Path) -> anyhow::Result<BeadLibrary> {
-    BeadLibrary::parse(&read(path)?).with_context(|| path.display().to_string())
+    BeadLibrary::parse(&file::text(path)?).with_context(|| path.display().to_string())
 }
 
 fn parse_bead(text: &str) -> Result<(f64, f64), String> {

@@ -6,8 +6,9 @@ use beadwright::Layer;
 use beadwright::files::{Folder, PLAN, write_file};
 use beadwright::number::fixed;
 use beadwright::pass::Pass;
-use beadwright::trial::{self, BeadSize, Design, Factor, Layout, More, Plate, PlatePlan, Series, Shape, Slope};
-use glam::DVec2;
+use beadwright::trial::{
+    self, BeadSize, Design, Factor, Layout, More, Parameter, Plate, PlatePlan, Series, Shape, Slope, Sought,
+};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -125,8 +126,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "--margin, --gap and --wait lie between 0 and 10000."
     );
     let series = series(arguments, &own, plate)?;
-    let title = format!("Trials with {}", own.name);
     let posts = if arguments.post.is_empty() { &own.posts } else { &arguments.post };
+    let by_file = arguments.vary.iter().any(|factor| factor.parameter == Parameter::WeaveFile);
+    anyhow::ensure!(
+        !by_file || posts.iter().all(|post| post == "inform"),
+        "--vary weave_file: only Yaskawa controllers (inform) weave by files. Vary weave_length, weave_amplitude and weave_dwell for \
+         others, or leave them out (--post inform)."
+    );
+    let title = format!("Trials with {}", own.name);
     let folder = if arguments.post.is_empty() { profile::folder(name) } else { PathBuf::new() };
     let stale = arguments.output.join(PlatePlan::name(series.plates()));
     anyhow::ensure!(
@@ -145,7 +152,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for folder in plates {
         folder.commit()?;
     }
-    let sheet = trial::csv(&title, series.shape, &series.factors, &series.trials, arguments.length);
+    let sheet = trial::csv(&title, &series);
     write_file(&arguments.output.join("sheet.csv"), sheet.as_bytes())?;
     write_file(&arguments.output.join("sheet.html"), trial::page(&title, &series, plate).html().as_bytes())?;
     say(arguments, &series, &plans)
@@ -261,16 +268,21 @@ pub(crate) fn measure(arguments: &Measure) -> anyhow::Result<()> {
     let named = || arguments.sheet.display().to_string();
     let count = trial::trials_on(&text, arguments.plate).with_context(named)?;
     let level = plan.layers.first().map(|layer| layer.z);
-    let trial = |layer: &Layer| if Some(layer.z) == level { layer.passes.iter().map(line).collect() } else { None };
-    let beads: Option<Vec<Vec<[DVec2; 2]>>> = plan.layers.iter().take(count).map(trial).collect();
-    let beads = beads.context(
+    let weave = plan.profile.as_ref().and_then(|profile| profile.weave.as_ref());
+    let sought = |layer: &Layer| {
+        let beads: Vec<_> = layer.passes.iter().map(line).collect::<Option<_>>()?;
+        let wider = weave.map_or(0.0, |weave| weave.at_layer(layer.index).amplitude - weave.amplitude);
+        let width = layer.passes.first()?.width.max();
+        (Some(layer.z) == level).then_some(Sought { beads, reach: REACH * width + wider.max(0.0) })
+    };
+    let trials: Option<Vec<Sought>> = plan.layers.iter().take(count).map(sought).collect();
+    let trials = trials.context(
         "a scan is measured for straight beads, by themselves or side by side. Measure walls and corners by hand.",
     )?;
     let (task, bar) = progress::task()?;
     let scan = arguments.scanner.read(&arguments.scan, 1.0, &task)?;
     bar.finish_and_clear();
-    let reach = plan.layers.first().and_then(|layer| layer.passes.first()).map_or(0.0, |pass| REACH * pass.width.max());
-    let sizes = trial::measured(&scan.points, &beads, reach).with_context(|| arguments.scan.display().to_string())?;
+    let sizes = trial::measured(&scan.points, &trials).with_context(|| arguments.scan.display().to_string())?;
     let sheet = trial::filled(&text, arguments.plate, &sizes).with_context(named)?;
     let output = arguments.output.as_ref().unwrap_or(&arguments.sheet);
     write_file(output, sheet.as_bytes())?;

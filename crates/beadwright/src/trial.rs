@@ -44,6 +44,8 @@ impl PlatePlan {
         let (layers, spans) = series.layers(index);
         let mut profile = profile.clone();
         (profile.process.layers, profile.start_stop.layers) = (series.processes(&spans), series.ends(&spans));
+        // Rows hold for single layers, and no trial is a helix.
+        profile.wall.helix = false;
         if let Some(weave) = &mut profile.weave {
             weave.layers = spans.iter().filter_map(|span| row_of_weave(series, span)).collect();
         }
@@ -128,7 +130,9 @@ pub fn ends_learnt(found: &Found, profile: &Profile) -> Result<Learnt, FoundErro
     let best = found.best(|parameter| set(profile, parameter))?;
     let mut ends = profile.start_stop.clone();
     let Learnt { mut lessons, mut notes } = Learnt::default();
-    for (parameter, value) in best.settings {
+    // What the trials have in common is a part of what was measured.
+    let held = found.held.iter().copied().filter(|(own, value)| nominal.end(*own) != Some(*value));
+    for (parameter, value) in held.chain(best.settings) {
         let (Some(key), Some(before)) = (parameter.key(), nominal.end(parameter)) else { continue };
         match parameter {
             Parameter::LeadInLength => ends.lead_in_length = value,
@@ -149,11 +153,9 @@ pub fn ends_learnt(found: &Found, profile: &Profile) -> Result<Learnt, FoundErro
     ];
     for (key, before, after) in known {
         let Some((value, within)) = after else { continue };
-        if value < 0.0 {
-            // Metal that is there cannot be taken away by a hump or crater of less than nothing.
-            notes.push(format!(
-                "{key} would have to be {value:.2} mm: the deposit model lays more of the lead's metal upwards than was measured."
-            ));
+        if value < -within {
+            notes
+                .push(format!("{key} is taken as 0: {value:.2} mm would fit, and the deposit model has none below 0."));
         }
         lessons.push(Lesson { key, before, after: value.max(0.0), plus_minus: Some(within) });
     }

@@ -96,15 +96,20 @@ impl From<Option<f64>> for Given {
     }
 }
 
+/// Why no layers, counted from 1, lie from the first to the last of these.
+pub(crate) fn no_layers(from: usize, to: usize) -> Option<String> {
+    let wrong = from == 0 || to < from;
+    wrong.then(|| "layers count from 1, and the last must not come before the first.".to_owned())
+}
+
 /// What is impossible in a row for some layers, given the limits of what holds in them.
 pub fn broken_row(section: &str, from: usize, to: usize, limits: &[Limit]) -> Option<Broken> {
-    let reason = if from == 0 || to < from {
-        "layers count from 1, and the last one comes after the first.".to_owned()
-    } else {
+    let out_of_range = || {
         let Limit { key, least, greatest, unit, reason, .. } = limits.iter().find(|limit| !limit.holds())?;
         let name = key.rsplit_once('.').map_or(*key, |(_, name)| name);
-        format!("its {name} must lie between {least} and {greatest} {unit}: {reason}.")
+        Some(format!("its {name} must lie between {least} and {greatest} {unit}: {reason}."))
     };
+    let reason = no_layers(from, to).or_else(out_of_range)?;
     let value = format!("{{ from = {from}, to = {to}, … }}");
     Some(Broken { key: format!("{section}.layers"), value, reason })
 }

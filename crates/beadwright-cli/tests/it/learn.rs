@@ -196,7 +196,9 @@ fn starts_and_ends_are_learnt_from_their_trials() {
         let lesson = lessons.iter().find(|lesson| lesson["key"] == key).unwrap_or_else(|| panic!("{key}: {learnt}"));
         lesson["after"].as_f64().unwrap()
     };
+    // What the trials had in common goes with what was found, and a hot start of 1.5 times the power lays more than was measured.
     for (key, truth, within) in [
+        ("start_stop.lead_in_length", 8.0, 1e-6),
         ("start_stop.lead_in_power", 1.5, 0.05),
         ("start_stop.crater_fill_time", 1.0, 1e-6),
         ("start_stop.hump_height", 0.0, 0.05),
@@ -208,7 +210,13 @@ fn starts_and_ends_are_learnt_from_their_trials() {
     }
     let mine = fs::read_to_string(at.join("mine.toml")).unwrap();
     assert!(mine.contains(&format!("crater_depth = {:.3}", lesson("start_stop.crater_depth"))), "{mine}");
+    let hot = beadwright::Profile::parse(&mine).unwrap().start_stop;
+    assert!(hot.lead_in_length == 8.0 && (hot.lead_in_power - 1.5).abs() < 0.05, "{mine}");
     ok(at, &["profile", "check", "mine.toml"]);
+    // As a spreadsheet saves it, with a byte order mark.
+    let marked = "\u{feff}".to_owned() + &fs::read_to_string(at.join("sheet.csv")).unwrap();
+    fs::write(at.join("marked.csv"), marked).unwrap();
+    assert_eq!(ok(at, &["bead", "fit", "marked.csv", "-p", "cmt-steel-robots"]), ok(at, &fit[..5]));
     let said = ok(at, &fit[..5]);
     assert!(said.contains("least hump and crater") && said.contains("start_stop.lead_in_power"), "{said}");
     assert!(refused(at, &["bead", "fit", "sheet.csv", "--to", "mine.toml"], 1).contains("(-p)"));
@@ -257,9 +265,67 @@ fn corners_and_weaves_are_fitted_as_their_sheets_come() {
         .unwrap();
     let want =
         ["bead", "fit", "woven.csv", "--want", "6.5x1.45", "--tolerance", "2", "-p", "base.toml", "--to", "wide.toml"];
+    // Without a profile there is only the recipe; a profile that does not weave cannot hold it.
+    assert!(ok(at, &want[..7]).contains("weave_amplitude"));
+    let said = refused(at, &[&want[..7], &["--to", "wide.toml"]].concat(), 1);
+    assert!(said.contains("does not weave") && said.contains("(-p)"), "{said}");
     ok(at, &want);
     let wide = fs::read_to_string(at.join("wide.toml")).unwrap();
     let amplitude: f64 = wide.lines().find_map(|line| line.strip_prefix("amplitude = ")).unwrap().parse().unwrap();
     assert!((4.0 + amplitude - 6.5).abs() < 0.2, "{wide}");
     ok(at, &["profile", "check", "wide.toml"]);
+}
+
+/// From the plate to the profile without callipers: a scan of beads side by side, whose valleys deepen with their distance, fills in the
+/// sheet, and the widest stepover with valleys of a tenth of the height goes into the profile.
+#[test]
+fn a_stepover_is_learnt_from_a_scan_of_beads_side_by_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let trial = ["bead", "trial", "-p", "cmt-steel-robots", "--shape", "overlap", "--vary", "stepover=0.6..0.85"];
+    let said = ok(at, &[&trial[..], &["--levels", "4", "--length", "60", "--plate", "300x160"]].concat());
+    assert!(said.contains("4 trials") && said.contains("on 1 plate") && said.contains("-p PROFILE --to"), "{said}");
+    let profile = beadwright::Profile::built_in("cmt-steel-robots").unwrap();
+    let (width, height) = (profile.bead.width, profile.bead.height);
+    let plan = json(&at.join("trial/trial_1/plan.json"));
+    let lines = |layer: &serde_json::Value| -> Vec<[[f64; 2]; 2]> {
+        let place = |point: &serde_json::Value| [0, 1].map(|k| point[k].as_f64().unwrap());
+        let line = |pass: &serde_json::Value| [0, 1].map(|k| place(&pass["points"][k]));
+        layer["passes"].as_array().unwrap().iter().map(line).collect()
+    };
+    let trials: Vec<_> = plan["layers"].as_array().unwrap().iter().take(4).map(lines).collect();
+    // Valleys of half a bead's height for each unit beyond 0.6 of the width, and none that are deeper than the metal.
+    let surface = |x: f64, y: f64| -> f64 {
+        let own = |lines: &Vec<[[f64; 2]; 2]>| {
+            let stepover = lines[1][0][1] - lines[0][0][1];
+            let between = (lines[0][0][1]..lines[2][0][1]).contains(&y);
+            let floor = if between { height * (1.0 - (stepover / width - 0.6)) } else { 0.0 };
+            let crown = |line: &[[f64; 2]; 2]| height * (1.0 - (2.0 * (y - line[0][1]) / width).powi(2));
+            let inside = (lines[0][0][0]..=lines[0][1][0]).contains(&x);
+            if inside { lines.iter().map(crown).fold(floor, f64::max) } else { 0.0 }
+        };
+        trials.iter().map(own).fold(0.0, f64::max)
+    };
+    let points = (0..750).flat_map(|i| (0..400).map(move |j| (0.4 * f64::from(i), 0.4 * f64::from(j))));
+    let scan: String = points.map(|(x, y)| format!("{x:.2} {y:.2} {:.3}\n", surface(x, y))).collect();
+    fs::write(at.join("scan.xyz"), scan).unwrap();
+    let said = ok(at, &["bead", "measure", "trial/sheet.csv", "scan.xyz"]);
+    assert_eq!(said.matches("deepest valley").count(), 4, "{said}");
+    let fit = ["bead", "fit", "trial/sheet.csv", "-p", "cmt-steel-robots"];
+    let said = ok(at, &[&fit[..], &["--to", "mine.toml"]].concat());
+    assert!(said.contains("fill.stepover") && said.contains("layers.height"), "{said}");
+    let mine = beadwright::Profile::parse(&fs::read_to_string(at.join("mine.toml")).unwrap()).unwrap();
+    assert!((mine.stepover() / width - 0.7).abs() < 0.02, "{said}");
+    ok(at, &["profile", "check", "mine.toml"]);
+    // Shallower valleys need closer beads, and none lie as close as this would take.
+    let said = ok(at, &[&fit[..], &["--valley", &format!("{}", 0.05 * height), "--json"]].concat());
+    let closer: serde_json::Value = serde_json::from_str(&said).unwrap();
+    assert!((closer["lessons"][0]["after"].as_f64().unwrap() / width - 0.65).abs() < 0.02, "{said}");
+    assert!(refused(at, &["bead", "fit", "trial/sheet.csv", "--valley", "0.2"], 1).contains("(-p)"));
+    let said = refused(at, &["bead", "fit", "trial/sheet.csv", "--want", "6x2"], 1);
+    assert!(said.contains("sheet of single beads"), "{said}");
+    // Walls grow: their heights are not those of beads on a plate.
+    ok(at, &["bead", "trial", "-p", "cmt-steel-robots", "--shape", "wall", "--vary", "dwell=0..60", "-o", "walls"]);
+    let said = refused(at, &["bead", "measure", "walls/sheet.csv", "scan.xyz"], 1);
+    assert!(said.contains("by hand"), "{said}");
 }

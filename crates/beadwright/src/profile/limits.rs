@@ -109,6 +109,16 @@ fn contradiction(p: &Profile) -> Option<Broken> {
         let reason = "the size of a dot depends on its time, so process.follow must be \"speed\".".to_owned();
         return Some(Broken { key: "spot.time".to_owned(), value: spot.time.to_string(), reason });
     }
+    if p.wall.helix {
+        let rows = [("start_stop.layers", p.start_stop.layers.len())];
+        let weaves = ("weave.layers", p.weave.as_ref().map_or(0, |weave| weave.layers.len()));
+        if let Some((key, count)) = rows.into_iter().chain([weaves]).find(|(_, count)| *count > 0) {
+            let reason =
+                "the turns of a helix are one pass, which begins and ends once: leave out the rows, or wall.helix.";
+            let reason = reason.to_owned();
+            return Some(Broken { key: key.to_owned(), value: format!("{count} rows"), reason });
+        }
+    }
     if let Some(post) = p.posts.iter().find(|post| !own::is_folder(post) && dialect::find(post).is_none()) {
         return Some(Broken::text("posts", post, format!("the posts are {}.", dialect::names().join(", "))));
     }

@@ -5,6 +5,7 @@ use crate::common;
 use beadwright::bead::library::{BeadLibrary, Columns, Layering, Measured, Wish};
 use beadwright::dialect;
 use beadwright::dialect::krl::KrlArc;
+use beadwright::dialect::rapid::RapidArc;
 use beadwright::dialect::reading::ReadProgram;
 use beadwright::files::Programs;
 use beadwright::process::StartStop;
@@ -61,6 +62,7 @@ fn programs_weld_the_trials_of_the_sheet() {
     for (post, main) in POSTS {
         let read = program(&files(&plan, post), post, main);
         let passes: Vec<_> = read.layers().into_iter().flat_map(|layer| layer.passes).collect();
+        assert!(passes.len() > series.trials.len(), "{post}: {} passes", passes.len());
         for (trial, pass) in series.trials.iter().zip(&passes) {
             let (from, to) = (trial.paths[0][0], trial.paths[0][1]);
             let ends = [pass.points[0].truncate(), pass.points[pass.points.len() - 1].truncate()];
@@ -84,14 +86,18 @@ fn programs_weld_the_starts_and_ends_of_the_sheet() {
     profile.start_stop = StartStop { lead_in_length: 10.0, lead_out_length: 8.0, ..StartStop::default() };
     let rapid = profile.dialects.rapid.as_mut().unwrap();
     rapid.speed_step = 0.001;
-    let factors = ["lead_in_power=1.2..1.8", "lead_out_power=0.6..0.9", "crater_fill_time=0.3..1.1"];
+    // The section's own filling must not take the place of none.
+    rapid.seam.fill_time = 0.3;
+    let factors = ["lead_in_power=1.2..1.8", "lead_out_power=0.6..0.9", "crater_fill_time=0..1.1"];
     let series = series_of(Shape::Ends, &profile, &factors, Design::LatinHypercube(5), 4);
+    assert!(series.trials.iter().any(|trial| trial.values[2] == 0.0));
     let plan = PlatePlan::new(&series, 0, &profile);
     let nominal = profile.process.deposition_speed;
     for (post, main) in POSTS {
         let files = files(&plan, post);
         let read = program(&files, post, main);
         let passes: Vec<_> = read.layers().into_iter().flat_map(|layer| layer.passes).collect();
+        assert!(passes.len() > series.trials.len(), "{post}: {} passes", passes.len());
         for (trial, pass) in series.trials.iter().zip(&passes) {
             let expected = [nominal / trial.values[0], nominal, nominal / trial.values[1]];
             assert!(
@@ -108,9 +114,12 @@ fn programs_weld_the_starts_and_ends_of_the_sheet() {
         if post == "rapid" {
             for trial in &series.trials {
                 let text = &files[&format!("trial_1_L{:03}.mod", trial.number)];
-                let seam = text.lines().find(|line| line.contains("seamdata smLayer")).unwrap();
-                assert!(seam.contains(&format!(",{:.3},[", trial.values[2])), "{}: {seam}", trial.number);
-                assert!(text.contains("ArcLEnd") && text.contains(",smLayer,") && !text.contains(",smBead,"), "{text}");
+                let main = &files["trial_1.mod"];
+                let own = text.lines().find(|line| line.contains("seamdata smLayer"));
+                let seam = own.or(main.lines().find(|line| line.contains("seamdata smBead"))).unwrap();
+                assert!(seam.contains(&format!("],0.000,{:.3},[", trial.values[2])), "{}: {seam}", trial.number);
+                let [layer, bead] = [",smLayer,", ",smBead,"].map(|name| text.contains(name));
+                assert!(text.contains("ArcLEnd") && layer == own.is_some() && bead != layer, "{text}");
             }
             assert!(files[&format!("trial_1_L{:03}.mod", series.trials.len() + 1)].contains(",smBead,"));
         }
@@ -134,6 +143,26 @@ fn without_craters(profile: &Profile) -> Profile {
     profile
 }
 
+/// The time of the section's own filling counts only where `[start_stop]` fills no crater in any layer.
+#[test]
+fn the_time_of_a_crater_is_counted_once() {
+    let mut profile = with_all_dialects("cmt-steel-robots");
+    profile.posts = vec!["rapid".to_owned()];
+    let series = series_of(Shape::Ends, &profile, &["crater_fill_time=0..1"], Design::Factorial(3), 4);
+    let mut time = |own: f64, rows: bool| {
+        let rapid = profile.dialects.rapid.as_mut().unwrap();
+        (rapid.arc, rapid.seam.fill_time) = (RapidArc::Instructions, own);
+        let mut plan = PlatePlan::new(&series, 0, &profile);
+        if !rows {
+            plan.profile.start_stop.layers.clear();
+        }
+        plan.metrics().total_time_s
+    };
+    assert!(time(0.4, false) - time(0.0, false) > 1.0);
+    assert!((time(0.4, true) - time(0.0, true)).abs() < 1e-9);
+    assert!((time(0.0, true) - time(0.0, false) - 1.5).abs() < 1e-6, "0, 0.5 and 1 s");
+}
+
 /// Each trial is woven as the sheet says: by the controller where it weaves, by moves elsewhere.
 #[test]
 fn programs_weave_as_the_sheet_says() {
@@ -152,6 +181,7 @@ fn programs_weave_as_the_sheet_says() {
         let read = program(&files, post, main);
         assert!(read.faults.is_empty(), "{post}: {:?}", read.faults);
         let passes: Vec<_> = read.layers().into_iter().flat_map(|layer| layer.passes).collect();
+        assert!(passes.len() > series.trials.len(), "{post}: {} passes", passes.len());
         for (trial, pass) in series.trials.iter().zip(&passes) {
             let (amplitude, length) = (trial.values[0], trial.values[1]);
             match *post {
@@ -194,6 +224,54 @@ fn programs_weave_as_the_sheet_says() {
         let wanted = format!("Length {:.5},Amplitude {:.5}", trial.values[1], trial.values[0]);
         assert!(of_layer(&files, trial.number).contains(&wanted), "{wanted}: {}", of_layer(&files, trial.number));
     }
+}
+
+/// A robot that weaves by a distance may stay at the sides for another time in each trial: its program has no fault.
+#[test]
+fn the_dwell_of_a_weave_may_differ_from_trial_to_trial() {
+    let mut profile = with_all_dialects("cmt-steel-robots");
+    profile.weave = Some(Weave { length: 4.0, amplitude: 2.0, dwell: 0.1, file: 1, layers: Vec::new() });
+    let series = series(&profile, &["weave_dwell=0.1..0.4"], Design::Factorial(4), 5);
+    let plan = PlatePlan::new(&series, 0, &profile);
+    let read = program(&files(&plan, "rapid"), "rapid", "trial_1.mod");
+    assert!(read.faults.is_empty(), "{:?}", read.faults);
+}
+
+/// The crater of a layer with its own wire feed is filled with a part of that, and by its job.
+#[test]
+fn the_seam_of_a_layer_has_the_wire_feed_and_the_job_of_the_layer() {
+    let mut profile = with_all_dialects("cmt-steel-robots");
+    profile.dialects.rapid.as_mut().unwrap().speed_step = 0.001;
+    let series = series(&profile, &["wire_feed_speed=3..5", "job=7,8"], Design::Factorial(2), 5);
+    let plan = PlatePlan::new(&series, 0, &profile);
+    let files = files(&plan, "rapid");
+    for trial in &series.trials {
+        let text = &files[&format!("trial_1_L{:03}.mod", trial.number)];
+        let data = |name: &str| {
+            let line = text.lines().find(|line| line.contains(name)).unwrap_or_else(|| panic!("{name}: {text}"));
+            line.split_once(":=").unwrap().1.to_owned()
+        };
+        let weld = data("welddata wd1");
+        let main = weld.split_once(",0,").unwrap().1.split_once(']').unwrap().0;
+        assert!(main.starts_with(&format!("[{},", trial.values[1])), "{main}");
+        // To strike, to move on, and after the filling.
+        assert_eq!(data("seamdata smLayer").matches(main).count(), 3, "{main} {}", data("seamdata smLayer"));
+    }
+}
+
+/// The turns of a helix are one pass: rows that begin or end within it are refused.
+#[test]
+fn a_helix_has_no_rows_for_single_layers() {
+    let base = "inherits = \"cmt-steel-robots\"\n[wall]\nhelix = true\n[start_stop]\n";
+    let rows = "layers = [{ from = 1, to = 2, crater_fill_time = 1.0 }]\n";
+    assert!(Profile::parse(base).is_ok());
+    let said = Profile::parse(&format!("{base}{rows}")).unwrap_err().to_string();
+    assert!(said.contains("start_stop.layers") && said.contains("wall.helix"), "{said}");
+    // A plate of trials has no helix, whatever the profile says.
+    let mut profile = profile("cmt-steel-robots");
+    profile.wall.helix = true;
+    let series = series_of(Shape::Ends, &profile, &["crater_fill_time=0..1"], Design::Factorial(3), 1);
+    assert!(!PlatePlan::new(&series, 0, &profile).profile.wall.helix);
 }
 
 /// Where the cell can set the wire feed, it is that of the sheet; where it cannot, nothing is written.

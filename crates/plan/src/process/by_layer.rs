@@ -1,7 +1,7 @@
 //! Other speeds for some layers: `[[process.layers]]`.
 
 use super::Process;
-use crate::limit::Broken;
+use crate::limit::{Broken, no_layers};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
@@ -51,18 +51,19 @@ impl Process {
             [LayerProcess::RATES.start(), LayerProcess::RATES.end()].map(|rate| rate * self.deposition_speed);
         self.layers.iter().find_map(|row| {
             let LayerProcess { from, to, deposition_speed: speed, current, .. } = *row;
-            let reason = if from == 0 || to < from {
-                "layers count from 1, and the last one comes after the first."
+            let reason = if let Some(reason) = no_layers(from, to) {
+                reason
             } else if !(least..=most).contains(&speed) {
                 "its deposition_speed must lie between a fifth and five times that of the process: the wire feed changes by \
                  the same factor."
+                    .to_owned()
             } else if !current.is_none_or(|current| (1e-3..=2000.0).contains(&current)) {
-                "its current must lie between 0.001 and 2000 A."
+                "its current must lie between 0.001 and 2000 A.".to_owned()
             } else {
                 return None;
             };
             let value = format!("{{ from = {from}, to = {to}, deposition_speed = {speed} }}");
-            Some(Broken { key: "process.layers".to_owned(), value, reason: reason.to_owned() })
+            Some(Broken { key: "process.layers".to_owned(), value, reason })
         })
     }
 }

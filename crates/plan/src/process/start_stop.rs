@@ -165,7 +165,7 @@ impl StartStop {
 
     /// Settings that do not fit the shortest pass (mm), as sentences.
     pub fn notes(&self, shortest: f64) -> Vec<String> {
-        let lead = self.lead_in_length + self.lead_out_length;
+        let lead = self.all().map(|ends| ends.lead_in_length + ends.lead_out_length).fold(0.0, f64::max);
         let fits = format!("fill.min_pass_length is {shortest} mm");
         let lead_note = (lead > shortest).then(|| {
             format!("Lead-in and lead-out take {lead} mm, but {fits}: on passes shorter than that, both are shortened.")

@@ -122,6 +122,11 @@ impl Parameter {
         self.about().unit
     }
 
+    /// Whether it says how beads begin and end.
+    pub fn is_of_ends(self) -> bool {
+        self.key().is_some_and(|key| key.starts_with("start_stop."))
+    }
+
     /// Whether it is the number of something, so that nothing lies between two of its values.
     fn is_number(self) -> bool {
         matches!(self, Self::Job | Self::WeaveFile)

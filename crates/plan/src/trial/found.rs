@@ -3,7 +3,7 @@
 use super::Parameter;
 use super::shape::{CORNER, ENDS, OVERLAP};
 use super::sheet::{self, Readings, SheetError};
-use crate::bead::library::{Estimate, Input, LibraryError, Measured, Response, Surface, code, grid, t_95};
+use crate::bead::library::{Estimate, Input, LibraryError, Measured, Response, Surface, along, code, grid, t_95};
 
 /// What the trials of a sheet were welded for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,10 +25,13 @@ pub struct Found {
     pub names: [&'static str; 2],
     /// How good the fits are.
     pub responses: [Response; 2],
-    /// For hump and crater, the length over which each fades, mm: the mean over the trials that have one.
+    /// For hump and crater, the length over which each fades, mm: the mean over the trials that have one, and the interval in which
+    /// the next is expected.
     pub lengths: [Option<Estimate>; 2],
     /// What the fit had to leave out, as sentences.
     pub notes: Vec<String>,
+    /// What all trials have in common of starts and ends.
+    pub held: Vec<(Parameter, f64)>,
     factors: Vec<Parameter>,
     surface: Surface,
 }
@@ -57,9 +60,11 @@ pub struct Widest {
 
 /// Stepovers that are tried, evenly over the range that was welded.
 const STEPOVERS: u32 = 400;
-/// Times that the grid on which the best settings are sought is made finer about the best so far, and how much.
-const FINER: usize = 3;
-const FACTOR: f64 = 0.1;
+/// The grid on which the best settings are sought is made finer about the best so far, down to this part of the range.
+const FINEST: f64 = 1e-3;
+/// Of settings that do equally well, those with the least power and length are chosen: what a step from the least to the greatest
+/// value costs, mm².
+const MORE: f64 = 1e-4;
 
 impl Found {
     /// What a sheet says; `None` if it is not one for starts and ends, for corners or for overlaps.
@@ -91,29 +96,38 @@ impl Found {
         values: fn(&[Option<f64>]) -> [Option<f64>; 2],
         lengths: [Option<usize>; 2],
     ) -> Result<Self, FoundError> {
+        let held = held(readings);
+        let is_held = |k: usize| held.iter().any(|(factor, _)| *factor == readings.factors[k]);
+        let varied: Vec<usize> = (0..readings.factors.len()).filter(|k| !is_held(*k)).collect();
         let mut measured = Measured::default();
         let mut found = [Vec::new(), Vec::new()];
+        let mut faded = [Vec::new(), Vec::new()];
         for (set, cells) in &readings.trials {
             let [Some(first), Some(second)] = values(cells) else {
                 measured.unmeasured += 1;
                 continue;
             };
-            measured.rows.push(set.clone());
+            measured.rows.push(varied.iter().map(|k| set[*k]).collect());
+            for (k, height) in [first, second].into_iter().enumerate() {
+                let length = lengths[k].and_then(|column| cells[column]).filter(|length| height > 0.0 && *length > 0.0);
+                faded[k].extend(length);
+            }
             found[0].push(first);
             found[1].push(second);
         }
         if measured.rows.is_empty() {
             return Err(FoundError::Empty(names));
         }
-        measured.inputs = (0..).zip(&readings.factors).map(|(k, factor)| input(*factor, k, &measured.rows)).collect();
+        let inputs = varied.iter().enumerate();
+        measured.inputs = inputs.map(|(k, own)| input(readings.factors[*own], k, &measured.rows)).collect();
         let surface = Surface::over(&measured)?;
         let own = |name: &str| readings.factors.iter().copied().find(|factor| factor.name() == name);
         Ok(Self {
             subject,
             names,
             responses: [0, 1].map(|k| surface.response(&found[k])),
-            lengths: lengths
-                .map(|column| mean(readings.trials.iter().filter_map(|(_, cells)| cells[column?]).collect())),
+            lengths: faded.map(mean),
+            held,
             notes: surface.notes.clone(),
             factors: surface.measured.inputs.iter().filter_map(|input| own(&input.name)).collect(),
             surface,
@@ -143,22 +157,24 @@ impl Found {
     /// what else was varied has the value that `nominal` gives.
     ///
     /// # Errors
-    /// [`FoundError::Library`] if a nominal value lies outside the range that was tried.
+    /// [`FoundError`] if a nominal value is missing or lies outside the range that was tried.
     pub fn best(&self, nominal: impl Fn(Parameter) -> Option<f64>) -> Result<Best, FoundError> {
         let inputs = &self.surface.measured.inputs;
-        let fixed = self.fixed(|factor| nominal(factor).filter(|_| !is_of_ends(factor)))?;
+        let fixed = self.fixed(Parameter::is_of_ends, nominal)?;
         let place = |free: &[f64]| -> Vec<f64> {
             let mut free = free.iter().copied();
             fixed.iter().map(|own| own.unwrap_or_else(|| free.next().unwrap_or_default())).collect()
         };
         let misses = |free: &[f64]| {
-            self.at(&place(free))
-                .map(|fit| fit.iter().map(|own| own.value.powi(2)).sum::<f64>())
-                .unwrap_or(f64::INFINITY)
+            let more = free.iter().map(|own| MORE * (own + 1.0) / 2.0).sum::<f64>();
+            let values = self.values(&place(free));
+            values.map_or(f64::INFINITY, |values| values.iter().map(|own| own.powi(2)).sum::<f64>() + more)
         };
         let count = fixed.iter().filter(|own| own.is_none()).count();
         let mut best = (f64::INFINITY, vec![0.0; count]);
-        for step in (0..=FINER).map(|finer| FACTOR.powi(finer as i32)) {
+        // Each grid reaches to the neighbours of the best point of the one before.
+        let finer = 2.0 / (along(count) - 1) as f64;
+        for step in std::iter::successors(Some(1.0), |step| Some(step * finer)).take_while(|step| *step > FINEST) {
             let middle = best.1.clone();
             let about = |point: Vec<f64>| -> Vec<f64> {
                 middle.iter().zip(point).map(|(middle, by)| (middle + step * by).clamp(-1.0, 1.0)).collect()
@@ -170,7 +186,7 @@ impl Found {
         let left = self.at(&coded).ok_or(FoundError::Unlike)?;
         let varied = self.factors.iter().zip(inputs).zip(&coded);
         let settings = varied.map(|((factor, input), own)| (*factor, input.value(*own)));
-        Ok(Best { settings: settings.filter(|(factor, _)| is_of_ends(*factor)).collect(), left })
+        Ok(Best { settings: settings.filter(|(factor, _)| factor.is_of_ends()).collect(), left })
     }
 
     /// The widest stepover, within what was tried, whose deepest valley is expected to be at most `deepest` mm deep; what else was
@@ -182,7 +198,7 @@ impl Found {
     pub fn widest(&self, deepest: f64, nominal: impl Fn(Parameter) -> Option<f64>) -> Result<Widest, FoundError> {
         let place = self.factors.iter().position(|factor| *factor == Parameter::Stepover);
         let place = place.ok_or(FoundError::Stepover)?;
-        let fixed = self.fixed(nominal)?;
+        let fixed = self.fixed(|factor| factor == Parameter::Stepover, nominal)?;
         let along = |step: u32| {
             let mut coded: Vec<f64> = fixed.iter().map(|own| own.unwrap_or_default()).collect();
             coded[place] = 1.0 - 2.0 * f64::from(step) / f64::from(STEPOVERS);
@@ -195,14 +211,19 @@ impl Found {
         all.into_iter().find(|own| own.valley.value <= deepest).ok_or(FoundError::Valleys { least, deepest })
     }
 
-    /// The values that factors are held at, coded; `None` for those that are sought.
-    fn fixed(&self, nominal: impl Fn(Parameter) -> Option<f64>) -> Result<Vec<Option<f64>>, FoundError> {
-        let held = |(input, factor): (&Input, &Parameter)| match nominal(*factor) {
-            Some(value) => {
-                input.check(value)?;
-                Ok(Some(code(std::slice::from_ref(input), &[value])[0]))
+    /// The values at which factors are held, coded; `None` for those that are sought.
+    fn fixed(
+        &self,
+        sought: impl Fn(Parameter) -> bool,
+        nominal: impl Fn(Parameter) -> Option<f64>,
+    ) -> Result<Vec<Option<f64>>, FoundError> {
+        let held = |(input, factor): (&Input, &Parameter)| {
+            if sought(*factor) {
+                return Ok(None);
             }
-            None => Ok(None),
+            let value = nominal(*factor).ok_or(FoundError::Unknown(*factor))?;
+            input.check(value)?;
+            Ok(Some(code(std::slice::from_ref(input), &[value])[0]))
         };
         self.surface.measured.inputs.iter().zip(&self.factors).map(held).collect()
     }
@@ -211,10 +232,21 @@ impl Found {
         let [first, second] = [0, 1].map(|k| self.surface.at(&self.responses[k], coded));
         Some([first?, second?])
     }
+
+    fn values(&self, coded: &[f64]) -> Option<[f64; 2]> {
+        let [first, second] = [0, 1].map(|k| self.surface.value(&self.responses[k], coded));
+        Some([first?, second?])
+    }
 }
 
-fn is_of_ends(factor: Parameter) -> bool {
-    factor.key().is_some_and(|key| key.starts_with("start_stop."))
+/// What all trials that were welded have in common of starts and ends.
+fn held(readings: &Readings) -> Vec<(Parameter, f64)> {
+    let same = |(k, factor): (usize, &Parameter)| {
+        let mut values = readings.trials.iter().map(|(set, _)| set[k]);
+        let first = values.next()?;
+        (factor.is_of_ends() && values.all(|value| value == first)).then_some((*factor, first))
+    };
+    readings.factors.iter().enumerate().filter_map(same).collect()
 }
 
 /// A factor as an input, with the range of its values in column `k`.
@@ -224,7 +256,7 @@ fn input(factor: Parameter, k: usize, rows: &[Vec<f64>]) -> Input {
     Input { name: factor.name().to_owned(), unit: factor.unit().to_owned(), min, max }
 }
 
-/// The mean of values, with the interval that holds the true one with 95 % probability; `None` without any.
+/// The mean of values, with the interval in which the next is expected with 95 % probability; `None` without any.
 fn mean(values: Vec<f64>) -> Option<Estimate> {
     let count = values.len() as f64;
     let value = values.iter().sum::<f64>() / count;
@@ -232,7 +264,7 @@ fn mean(values: Vec<f64>) -> Option<Estimate> {
     match values.len() {
         0 => None,
         1 => Some(Estimate { value, plus_minus: f64::INFINITY }),
-        n => Some(Estimate { value, plus_minus: t_95(n - 1) * (square / (count - 1.0) / count).sqrt() }),
+        n => Some(Estimate { value, plus_minus: t_95(n - 1) * (square / (count - 1.0) * (1.0 + 1.0 / count)).sqrt() }),
     }
 }
 
@@ -246,8 +278,11 @@ pub enum FoundError {
     #[error(transparent)]
     Library(#[from] LibraryError),
     /// Nothing was filled in.
-    #[error("no trial has both {} and {} yet: fill them in, with 0 where there is none.", .0[0], .0[1])]
+    #[error("no trial has both {} and {} yet: fill in their columns of the sheet.", .0[0], .0[1])]
     Empty([&'static str; 2]),
+    /// What was varied, and the profile does not have.
+    #[error("the trials vary {0}, which the profile does not have: name the profile with which they were welded (-p).")]
+    Unknown(Parameter),
     /// Beads side by side at one distance only.
     #[error("the stepover was not varied: weld beads side by side with --vary stepover=MIN..MAX.")]
     Stepover,

@@ -61,7 +61,7 @@ impl BeadSize {
 }
 
 /// Where starts and craters are left out: this fraction of the length at both ends.
-const LEFT_OUT: f64 = 0.2;
+pub(super) const LEFT_OUT: f64 = 0.2;
 /// Humps and craters are sought up to this fraction of the length.
 const FADED: f64 = 0.45;
 /// Lengths of humps and craters that are tried.
@@ -85,22 +85,33 @@ const CROWN: f64 = 0.1;
 const OUTLYING: f64 = 2.5;
 const FITS: usize = 8;
 
-/// The sizes of trials in a scan of the plate (mm): each a straight bead, or several side by side, from one place to another on the
-/// plate (mm); `reach` is the distance from a bead's middle up to which it may lie, mm. `None` where the scan does not show it.
+/// Where a trial is sought in a scan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sought {
+    /// A straight bead, or several side by side: each from one place to another on the plate, mm.
+    pub beads: Vec<[DVec2; 2]>,
+    /// Distance from the middle of a bead up to which it may lie, mm.
+    pub reach: f64,
+}
+
+/// The sizes of trials in a scan of the plate (mm); `None` where the scan does not show one.
 ///
 /// # Errors
 /// [`MeasureError`] if the scan shows no bare plate.
-pub fn measured(scan: &[DVec3], trials: &[Vec<[DVec2; 2]>], reach: f64) -> Result<Vec<Option<BeadSize>>, MeasureError> {
+pub fn measured(scan: &[DVec3], trials: &[Sought]) -> Result<Vec<Option<BeadSize>>, MeasureError> {
     let bare = |p: &&DVec3| {
-        let near = |[from, to]: &[DVec2; 2]| {
-            planar::polyline::distance_squared_to_segment(p.truncate(), *from, *to) <= reach * reach
+        let near = |trial: &Sought| {
+            let apart = |[from, to]: &[DVec2; 2]| {
+                planar::polyline::distance_squared_to_segment(p.truncate(), *from, *to).sqrt()
+            };
+            trial.beads.iter().any(|bead| apart(bead) <= trial.reach)
         };
-        !trials.iter().flatten().any(near)
+        !trials.iter().any(near)
     };
     let plate = Plane::fitted(&scan.iter().filter(bare).copied().collect::<Vec<_>>()).ok_or(MeasureError::NoPlate)?;
-    let size = |trial: &Vec<[DVec2; 2]>| match &trial[..] {
-        [bead] => one(scan, *bead, reach, &plate),
-        beads => beside(scan, beads, reach, &plate),
+    let size = |trial: &Sought| match &trial.beads[..] {
+        [bead] => one(scan, *bead, trial.reach, &plate),
+        beads => beside(scan, beads, trial.reach, &plate),
     };
     Ok(trials.iter().map(size).collect())
 }

@@ -27,7 +27,7 @@ mod sheet;
 pub use design::{Design, points};
 pub use factor::{Factor, FactorError, Parameter};
 pub use found::{Best, Found, FoundError, Subject, Widest};
-pub use measure::{BeadSize, MeasureError, More, Slope, measured};
+pub use measure::{BeadSize, MeasureError, More, Slope, Sought, measured};
 pub use plate::{Layout, Nominal, Placed, Plate, PlateError, Series, Span};
 pub use shape::Shape;
 pub use sheet::{SheetError, TrialWelded, as_measured, csv, filled, plates, trials_on};

@@ -2,6 +2,7 @@
 
 use super::design::shuffled;
 use super::digits;
+use super::measure::LEFT_OUT;
 use super::shape::{Stroke, bounds};
 use super::{Factor, Parameter, Shape};
 use crate::layer::Layer;
@@ -151,15 +152,31 @@ impl Series {
         self.nominal.width * feed * self.nominal.process.deposition_speed / speed
     }
 
+    /// Beads are measured in their middle, which hot starts and lead-outs must not reach.
     fn leave_room_between_leads(&self) -> Result<(), PlateError> {
         let length = self.layout.length;
-        let leads = |trial: &Placed| {
+        let lead = |trial: &Placed, [over, power]: [Parameter; 2]| {
             let own =
                 |parameter| self.value(&trial.values, parameter).or(self.nominal.end(parameter)).unwrap_or_default();
-            own(Parameter::LeadInLength) + own(Parameter::LeadOutLength)
+            if own(power) == 1.0 { 0.0 } else { own(over) }
         };
-        let long = self.trials.iter().map(|trial| (trial.number, leads(trial))).find(|(_, leads)| *leads >= length);
-        long.map_or(Ok(()), |(number, leads)| Err(PlateError::Leads { number, leads, length }))
+        let leads =
+            [[Parameter::LeadInLength, Parameter::LeadInPower], [Parameter::LeadOutLength, Parameter::LeadOutPower]];
+        let longest = |trial: &Placed| leads.map(|own| lead(trial, own)).into_iter().fold(0.0, f64::max);
+        let long =
+            self.trials.iter().map(|trial| (trial.number, longest(trial))).find(|(_, lead)| *lead > LEFT_OUT * length);
+        long.map_or(Ok(()), |(number, lead)| Err(PlateError::Lead { number, lead, length }))
+    }
+
+    /// What is not varied of starts and ends, with its value.
+    pub(super) fn held(&self) -> Vec<(Parameter, f64)> {
+        let varied = |parameter: &Parameter| self.factors.iter().any(|factor| factor.parameter == *parameter);
+        Parameter::all().filter(|own| !varied(own)).filter_map(|own| Some((own, self.nominal.end(own)?))).collect()
+    }
+
+    /// Length of a bead, or of both legs of a corner, mm.
+    pub(super) fn length(&self) -> f64 {
+        self.layout.length
     }
 
     /// How wide a trial may become, mm: hot starts, wider weaves, and beads that flow.
@@ -374,7 +391,9 @@ fn around(path: &[DVec2], width: f64) -> Polygon {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlateError {
     /// A factor of another shape.
-    #[error("{0} cannot be varied here: stepover belongs to overlaps, dwell to walls, angle to corners (--shape).")]
+    #[error(
+        "{0} cannot be varied here: stepover belongs to overlaps, dwell to walls, angle to corners, starts and ends to single beads (--shape ends) and corners."
+    )]
     Factor(Parameter),
     /// A weave where the torch does not weave.
     #[error("{0} cannot be varied with a profile that does not weave: set weave.length and weave.amplitude (--set).")]
@@ -389,16 +408,16 @@ pub enum PlateError {
         /// The value of that with which it does nothing.
         idle: f64,
     },
-    /// Leads longer than the bead.
+    /// A lead that reaches where the bead is measured.
     #[error(
-        "trial {number}: hot start and lead-out take {leads} mm of a bead of {length} mm, and nothing is left between them. \
-         Make the trials longer (--length)."
+        "trial {number}: its hot start or lead-out takes {lead} mm of a bead of {length} mm, which is measured in its middle: at most \
+         a fifth is possible at each end. Make the trials longer (--length)."
     )]
-    Leads {
-        /// The first trial with such leads.
+    Lead {
+        /// The first trial with such a lead.
         number: usize,
-        /// Length of both, mm.
-        leads: f64,
+        /// Length of the lead, mm.
+        lead: f64,
         /// Length of its bead, mm.
         length: f64,
     },

@@ -40,6 +40,7 @@ impl Shape {
             Parameter::Stepover => matches!(self, Self::Overlap(_)),
             Parameter::Dwell => matches!(self, Self::Wall(_)),
             Parameter::Angle => self == Self::Corner,
+            _ if parameter.is_of_ends() => matches!(self, Self::Ends | Self::Corner),
             _ => true,
         }
     }

@@ -1,20 +1,22 @@
 //! The sheet that is filled in at the bench, as CSV that `bead fit` and `bead walls` read as it is.
 
-use super::{BeadSize, Factor, Parameter, Placed, Shape};
+use super::{BeadSize, Parameter, Placed, Series, Shape};
 use crate::bead::library::{LibraryError, fields};
 use bead_part::text::table::separator;
 
 /// The sheet: a line for each trial in the order of welding, with empty cells for what is measured.
-pub fn csv(title: &str, shape: Shape, factors: &[Factor], trials: &[Placed], length: f64) -> String {
+pub fn csv(title: &str, series: &Series) -> String {
+    let Series { factors, shape, trials, .. } = series;
     // What else belongs to a trial of this shape.
     let more = |trial: &Placed| -> Vec<(&'static str, String)> {
         match shape {
-            Shape::Wall(layers) => vec![("length_mm", length.to_string()), ("layers", layers.to_string())],
+            Shape::Wall(layers) => vec![("length_mm", series.length().to_string()), ("layers", layers.to_string())],
+            Shape::Ends => series.held().into_iter().map(|(own, value)| (own.column(), value.to_string())).collect(),
             Shape::Overlap(_) => {
                 let apart = trial.paths.get(1).map_or(0.0, |second| second[0].distance(trial.paths[0][0]));
                 vec![("distance_mm", format!("{apart:.2}"))]
             }
-            Shape::Bead | Shape::Ends | Shape::Corner => Vec::new(),
+            Shape::Bead | Shape::Corner => Vec::new(),
         }
     };
     let names: Vec<&str> = trials.first().map(more).unwrap_or_default().into_iter().map(|(name, _)| name).collect();
@@ -115,7 +117,11 @@ pub(super) struct Readings {
 /// # Errors
 /// [`SheetError`] if the text is no sheet of trials, or for the first cell that is not a number.
 pub(super) fn readings(sheet: &str, columns: &[&str]) -> Result<Option<Readings>, SheetError> {
-    let table = Table::of(sheet)?;
+    let table = match Table::of(sheet) {
+        // Nothing but comments.
+        Err(SheetError::Column(_)) => return Ok(None),
+        table => table?,
+    };
     let at = |name: &str| table.column(name);
     let Some(wanted) = columns.iter().map(|name| at(name)).collect::<Option<Vec<usize>>>() else { return Ok(None) };
     let (factors, places): (Vec<Parameter>, Vec<usize>) =

@@ -4,8 +4,8 @@ use bead_plan::bead::library::{BeadLibrary, Columns, Measured};
 use bead_plan::process::StartStop;
 use bead_plan::random::Random;
 use bead_plan::trial::{
-    self, BeadSize, Design, Factor, Found, Layout, More, Nominal, Parameter, Plate, Series, Shape, Slope, Subject,
-    points,
+    self, BeadSize, Design, Factor, Found, Layout, More, Nominal, Parameter, Plate, Series, Shape, Slope, Sought,
+    Subject, points,
 };
 use glam::DVec3;
 use planar::DVec2;
@@ -214,7 +214,7 @@ fn truth(speed: f64, feed: f64) -> (f64, f64) {
 
 /// The sheet with the measured beads filled in, as a welder would.
 fn filled(series: &Series, mut measured: impl FnMut(&[f64]) -> Option<(f64, f64)>) -> String {
-    let sheet = trial::csv("trials", series.shape, &series.factors, &series.trials, 90.0);
+    let sheet = trial::csv("trials", series);
     let mut trials = series.trials.iter();
     let line = |line: &str| {
         if line.starts_with('#') || line.starts_with("bead") {
@@ -250,7 +250,7 @@ fn a_sheet_is_fitted_as_it_is_and_lines_without_measurements_are_left_out() {
     let (width, height) = truth(7.3, 5.6);
     assert!((found.width.value / width - 1.0).abs() < 0.01 && (found.height.value / height - 1.0).abs() < 0.01);
     // Nothing measured at all.
-    let empty = trial::csv("trials", series.shape, &series.factors, &series.trials, 90.0);
+    let empty = trial::csv("trials", &series);
     assert!(Measured::read(&empty, &Columns::default()).unwrap_err().to_string().contains("no bead"));
 }
 
@@ -258,7 +258,7 @@ fn a_sheet_is_fitted_as_it_is_and_lines_without_measurements_are_left_out() {
 #[test]
 fn the_sheet_of_overlaps_says_how_far_apart_the_beads_lie() {
     let series = series(&["stepover=0.6..0.8", "deposition_speed=6,9"], Shape::Overlap(3), 1, 1);
-    let sheet = trial::csv("overlaps", series.shape, &series.factors, &series.trials, 90.0);
+    let sheet = trial::csv("overlaps", &series);
     let mut lines = sheet.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
     let at = lines.next().unwrap().iter().position(|name| *name == "distance_mm").unwrap();
     for (line, trial) in lines.zip(&series.trials) {
@@ -379,10 +379,17 @@ fn what_cannot_be_laid_is_refused_with_the_remedy() {
     assert!(said.contains("a fifth to five times") && said.contains("process.wire_feed_speed"), "{said}");
     assert!(laid("dwell=6..9", 50.0).unwrap_err().to_string().contains("dwell to walls"));
     let said = laid("lead_in_power=1..2", 50.0).unwrap_err().to_string();
+    assert!(said.contains("--shape ends"), "{said}");
+    let factors = factors(&["lead_in_power=1..2"]);
+    let combinations = points(Design::Factorial(3), &factors, 1).unwrap();
+    let plate = Plate { length: 200.0, width: 100.0, margin: 10.0 };
+    let layout = Layout { plate, repeats: 1, seed: 1, length: 50.0, gap: 10.0, wait: 0.0, numbers: true };
+    let said = Series::new(factors, &combinations, Shape::Ends, layout, nominal()).unwrap_err().to_string();
     assert!(said.contains("changes nothing while start_stop.lead_in_length is 0"), "{said}");
     assert!(laid("weave_length=2..4", 50.0).unwrap_err().to_string().contains("weave.amplitude"));
     assert!(laid("deposition_speed=6..9", 90.0).is_ok());
     assert!(Shape::Bead.allows(Parameter::Job));
+    assert!(Parameter::all().all(|own| Parameter::named(own.name()) == Some(own)), "each row is at its place");
 }
 
 /// A scan of beads of known size on a tilted plate, with noise, at any angle of the beads.
@@ -410,8 +417,8 @@ fn beads_in_a_scan_have_the_size_that_they_were_made_with() {
                 let z = 12.0 + 0.004 * at.x - 0.003 * at.y + bead + noise * random.normal();
                 scan.push(DVec3::new(at.x, at.y, z));
             }
-            let trials: Vec<_> = beads.iter().map(|bead| vec![*bead]).collect();
-            let found = trial::measured(&scan, &trials, 8.0).unwrap();
+            let trials: Vec<Sought> = beads.iter().map(|bead| Sought { beads: vec![*bead], reach: 8.0 }).collect();
+            let found = trial::measured(&scan, &trials).unwrap();
             for (size, (width, height)) in found.iter().zip(sizes) {
                 let size = size.unwrap();
                 assert!((size.width / width - 1.0).abs() < most, "{noise} {degrees}: {size:?} {width}");
@@ -420,7 +427,7 @@ fn beads_in_a_scan_have_the_size_that_they_were_made_with() {
             assert_eq!(found.last().unwrap(), &None, "{noise} {degrees}");
         }
     }
-    assert!(trial::measured(&[], &[vec![[DVec2::ZERO, DVec2::X]]], 5.0).is_err());
+    assert!(trial::measured(&[], &[Sought { beads: vec![[DVec2::ZERO, DVec2::X]], reach: 5.0 }]).is_err());
 }
 
 /// A scan at this angle of a plate that tilts, with points half a millimetre apart; `height` is that of the beads above a place.
@@ -456,7 +463,7 @@ fn humps_and_craters_in_a_scan_are_as_high_and_as_long_as_they_were_made() {
                     if (0.0..=90.0).contains(&p.x) { (2.0 + ends) * across(p.y - 0.4, 6.0) } else { 0.0 }
                 };
                 let scan = scanned(degrees, noise, random, height);
-                match trial::measured(&scan, &[vec![bead]], 8.0).unwrap()[0].unwrap().more {
+                match trial::measured(&scan, &[Sought { beads: vec![bead], reach: 8.0 }]).unwrap()[0].unwrap().more {
                     More::One { hump, crater, .. } => [hump, crater],
                     More::Beside { .. } => panic!("one bead was welded"),
                 }
@@ -487,7 +494,7 @@ fn valleys_between_beads_in_a_scan_are_as_deep_as_they_were_made() {
                     if (0.0..=90.0).contains(&p.x) { highest } else { 0.0 }
                 };
                 let scan = scanned(degrees, noise, &mut random, height);
-                let found = trial::measured(&scan, &[lines.to_vec()], 8.0).unwrap();
+                let found = trial::measured(&scan, &[Sought { beads: lines.to_vec(), reach: 8.0 }]).unwrap();
                 let size = found[0].unwrap();
                 let More::Beside { valley } = size.more else { panic!("three beads were welded") };
                 let case = format!("{noise} {degrees} {stepover}: {size:?}");
@@ -496,7 +503,7 @@ fn valleys_between_beads_in_a_scan_are_as_deep_as_they_were_made() {
                 assert!((size.width - (6.0 + 2.0 * stepover)).abs() < 0.4, "{case}");
                 // What is seen goes into the sheet.
                 let series = series(&["stepover=0.6..0.9"], Shape::Overlap(3), 1, 1);
-                let sheet = trial::csv("t", series.shape, &series.factors, &series.trials, 90.0);
+                let sheet = trial::csv("t", &series);
                 assert_eq!(trial::trials_on(&sheet, 1).unwrap(), 3);
                 let filled = trial::filled(&sheet, 1, &[found[0], None, None]).unwrap();
                 assert!(filled.contains(&format!(",{:.2},{:.2},{valley:.2},", size.width, size.height)), "{filled}");
@@ -510,7 +517,7 @@ fn valleys_between_beads_in_a_scan_are_as_deep_as_they_were_made() {
 #[test]
 fn the_widest_stepover_with_shallow_valleys_is_found() {
     let series = series(&["stepover=0.6..0.8", "deposition_speed=6..10"], Shape::Overlap(3), 3, 5);
-    let sheet = trial::csv("t", series.shape, &series.factors, &series.trials, 90.0);
+    let sheet = trial::csv("t", &series);
     let found = |seed: u64| {
         let random = &mut Random::new(seed);
         let rows = sheet.lines().map(|line| {
@@ -544,7 +551,7 @@ fn the_widest_stepover_with_shallow_valleys_is_found() {
 #[test]
 fn a_scan_fills_in_the_lines_of_its_plate_only() {
     let series = series(&["deposition_speed=6..10"], Shape::Bead, 2, 1);
-    let sheet = trial::csv("trials", series.shape, &series.factors, &series.trials, 90.0);
+    let sheet = trial::csv("trials", &series);
     let level = Slope { height: 0.0, length: None };
     let more = More::One { width_varies: 0.1, height_varies: 0.1, hump: level, crater: level };
     let size = BeadSize { width: 6.123, height: 2.0, more };
@@ -592,8 +599,8 @@ fn starts_ends_and_weaves_are_varied_from_trial_to_trial() {
     // The numbers are welded as ever.
     assert_eq!(ends.at_layer(6), StartStop::default());
     assert!(series.processes(&spans).is_empty());
-    let said = laid(10.0).unwrap_err().to_string();
-    assert!(said.contains("of a bead of 10 mm") && said.contains("--length"), "{said}");
+    let said = laid(40.0).unwrap_err().to_string();
+    assert!(said.contains("of a bead of 40 mm") && said.contains("--length"), "{said}");
 }
 
 /// Hump and crater of a cell that nobody knows, mm: the first vanishes at a power of 1.6, the second with 0.9 s of filling.
@@ -605,7 +612,7 @@ fn hidden(power: f64, seconds: f64) -> [f64; 2] {
 #[test]
 fn the_settings_without_hump_and_crater_are_found() {
     let series = series(&["lead_in_power=1..2", "crater_fill_time=0..1.5"], Shape::Ends, 2, 7);
-    let sheet = trial::csv("t", series.shape, &series.factors, &series.trials, 90.0);
+    let sheet = trial::csv("t", &series);
     assert!(sheet.contains("hump_height_mm,hump_length_mm,crater_depth_mm,crater_length_mm"), "{sheet}");
     for seed in 0..20 {
         let random = &mut Random::new(seed);
@@ -615,12 +622,15 @@ fn the_settings_without_hump_and_crater_are_found() {
                 let values = &series.trials[number - 1].values;
                 let [hump, crater] = hidden(values[0], values[1]).map(|own| own + 0.05 * random.normal());
                 let own = [6.0, 2.0, hump, 8.0 + 0.3 * random.normal(), crater, 12.0].map(|own| format!("{own:.3}"));
-                cells[5..11].clone_from_slice(&own);
+                cells[9..15].clone_from_slice(&own);
             }
             cells.join(",") + "\n"
         });
         let found = Found::read(&rows.collect::<String>()).unwrap().unwrap();
         assert_eq!((found.subject, found.trials()), (Subject::Ends, 18));
+        // What the trials have in common is kept beside what they vary.
+        assert_eq!(found.factors(), [Parameter::LeadInPower, Parameter::CraterFillTime]);
+        assert!(found.held.contains(&(Parameter::LeadInLength, 8.0)) && found.held.len() == 4, "{:?}", found.held);
         let best = found.best(|_| None).unwrap();
         let [(power, a), (time, b)] = best.settings[..] else { panic!("{best:?}") };
         assert_eq!((power, time), (Parameter::LeadInPower, Parameter::CraterFillTime));
@@ -634,7 +644,7 @@ fn the_settings_without_hump_and_crater_are_found() {
 #[test]
 fn corners_are_fitted_over_their_angles() {
     let series = series(&["angle=30..150"], Shape::Corner, 3, 2);
-    let sheet = trial::csv("t", series.shape, &series.factors, &series.trials, 90.0);
+    let sheet = trial::csv("t", &series);
     let fill = |excess: fn(f64) -> f64| -> String {
         let row = |line: &str| match line.split(',').next().map(str::parse::<usize>) {
             Some(Ok(number)) => {

@@ -56,12 +56,22 @@ impl Surface {
     /// A fitted value at a point (−1 to 1 for each input), with the interval in which the next single measurement is expected;
     /// `None` if the point is unlike all measurements.
     pub(crate) fn at(&self, response: &Response, coded: &[f64]) -> Option<Estimate> {
+        let (row, leverage) = self.within(coded)?;
+        let spread = t_95(self.rows.len() - self.terms.len()) * (1.0 + leverage).sqrt();
+        Some(Estimate { value: dot(&response.coefficients, &row), plus_minus: spread * response.residual })
+    }
+
+    /// A fitted value at a point (−1 to 1 for each input); `None` if the point is unlike all measurements.
+    pub(crate) fn value(&self, response: &Response, coded: &[f64]) -> Option<f64> {
+        Some(dot(&response.coefficients, &self.within(coded)?.0))
+    }
+
+    /// The terms at a point and its leverage, if the point is like the measurements.
+    fn within(&self, coded: &[f64]) -> Option<(Vec<f64>, f64)> {
         let row = of_terms(&self.terms, coded);
         let leverage = least_squares::leverage(&self.factored.triangle, &row);
-        let spread = t_95(self.rows.len() - self.terms.len()) * (1.0 + leverage).sqrt();
         // Rounding must not exclude the measurements themselves.
-        (leverage <= self.largest_leverage() * (1.0 + 1e-9))
-            .then(|| Estimate { value: dot(&response.coefficients, &row), plus_minus: spread * response.residual })
+        (leverage <= self.largest_leverage() * (1.0 + 1e-9)).then_some((row, leverage))
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) use fit::{Surface, code};
 pub(crate) use least_squares::Factored;
 pub(crate) use measured::fields;
 pub use measured::{Columns, Measured};
-pub(crate) use next::grid;
+pub(crate) use next::{along, grid};
 pub use printed::{PrintedRow, median, printed_rows};
 pub use solve::{Layering, Limit, PREFERRED_RATIOS, Recipe, Wish};
 pub use student::t_95;

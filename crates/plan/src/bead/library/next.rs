@@ -8,9 +8,14 @@ const ALONG: usize = 21;
 /// Most points tried in all; with many inputs fewer lie along each.
 const MOST: usize = 200_000;
 
+/// The number of points along each input of a grid over this many of them.
+pub(crate) fn along(inputs: usize) -> usize {
+    (2..=ALONG).rev().find(|along| along.pow(inputs as u32) <= MOST).unwrap_or(2)
+}
+
 /// Points of a grid from −1 to 1 along each of this many inputs.
 pub(crate) fn grid(inputs: usize) -> impl Iterator<Item = Vec<f64>> {
-    let along = (2..=ALONG).rev().find(|along| along.pow(inputs as u32) <= MOST).unwrap_or(2);
+    let along = along(inputs);
     let point = move |mut number: usize| -> Vec<f64> {
         let next = |_| {
             let step = number % along;

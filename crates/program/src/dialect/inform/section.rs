@@ -4,7 +4,7 @@ use super::write::YaskawaInform;
 use crate::dialect::writing::needs;
 use crate::dialect::writing::orientation::{self, Turn};
 use crate::dialect::{DialectError, Extra, Hooks, Job, Section, Table, Templates, Writer};
-use crate::program::{ProgramSettings, Weave};
+use crate::program::ProgramSettings;
 use bead_plan::limit::{Broken, CONTROLLER, Limit, limit, limits};
 use serde::{Deserialize, Serialize};
 
@@ -176,7 +176,7 @@ impl Section for Inform {
     }
 
     fn writer(&self, job: &Job<'_>) -> Result<Box<dyn Writer>, DialectError> {
-        if job.weave.is_some_and(Weave::shares_files) {
+        if job.weave().is_some_and(|weave| weave.shares_files()) {
             let (what, remedy) = (
                 "[[weave.layers]] with the same weaving file",
                 "Give each of them a file of its own: the controller keeps the values there.",

@@ -175,7 +175,7 @@ impl Section for Krl {
     fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {
         let crater = &self.arctech.as_ref().filter(|_| self.arc == KrlArc::Arctech)?.crater;
         // The filling of `[start_stop]` is counted elsewhere, and replaces the section's.
-        let filling = if weld.ends.crater_fill_time > 0.0 { 0.0 } else { crater.time };
+        let filling = if weld.ends.fills_craters() { 0.0 } else { crater.time };
         Some(filling + crater.burnback_time + weld.process.gas_postflow)
     }
 

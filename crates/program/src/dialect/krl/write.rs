@@ -39,7 +39,11 @@ pub(super) struct KukaKrl {
 
 impl KukaKrl {
     /// Begins the program of a part and names the module after the part.
-    pub(super) fn new(job: &Job<'_>, krl: Krl) -> Self {
+    pub(super) fn new(job: &Job<'_>, mut krl: Krl) -> Self {
+        // Where `[start_stop]` fills craters, it says so for all of them.
+        if let Some(arctech) = krl.arctech.as_mut().filter(|_| job.weld.ends.fills_craters()) {
+            arctech.crater.time = 0.0;
+        }
         let volumes = Some(Volumes::new(krl.max_megabytes, "KRL", "src"));
         let frame = Frame { volumes, ..Frame::new(job, upper_name(&job.part), MAX_COMMENT, &krl) };
         let table = job.program.first_angles();

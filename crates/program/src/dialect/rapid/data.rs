@@ -74,10 +74,16 @@ fn arc(process: &Process, rapid: &Rapid, part: f64, schedule: u32) -> String {
     format!("[{schedule},{},{voltage},{feed},{control},{current},0,0,0]", rapid.mode)
 }
 
-/// Seamdata.
-pub(super) fn seam(process: &Process, rapid: &Rapid, seam: &RapidSeam) -> String {
+/// The schedule of the power source in layers with this process: their job, if it is not the nominal one.
+fn schedule(process: &Process, nominal: &Process, rapid: &Rapid) -> u32 {
+    if process.job == nominal.job { rapid.schedule } else { process.job }
+}
+
+/// Seamdata of layers with this process.
+pub(super) fn seam(process: &Process, nominal: &Process, rapid: &Rapid, seam: &RapidSeam) -> String {
     let time = |seconds: f64| fixed(seconds, 3);
-    let main = arc(process, rapid, 1.0, rapid.schedule);
+    let arc = |part: f64| arc(process, rapid, part * process.rate(), schedule(process, nominal, rapid));
+    let main = arc(1.0);
     [
         time(seam.purge_time),
         time(process.gas_preflow),
@@ -87,10 +93,10 @@ pub(super) fn seam(process: &Process, rapid: &Rapid, seam: &RapidSeam) -> String
         fixed(seam.heat_speed, 3),
         time(seam.heat_time),
         fixed(seam.heat_distance, 3),
-        arc(process, rapid, seam.heat_feed, rapid.schedule),
+        arc(seam.heat_feed),
         time(seam.cool_time),
         time(seam.fill_time),
-        arc(process, rapid, seam.fill_feed, rapid.schedule),
+        arc(seam.fill_feed),
         time(seam.burnback_time),
         time(seam.rollback_time),
         main,
@@ -102,7 +108,7 @@ pub(super) fn seam(process: &Process, rapid: &Rapid, seam: &RapidSeam) -> String
 /// Welddata for a deposition speed, mm/s, and the fraction `feed` of the wire feed. The tuning values are 0, as in
 /// ABB's examples. `process` is that of the layer; if it has its own job, that replaces the schedule.
 pub(super) fn weld(speed: f64, feed: f64, process: &Process, nominal: &Process, rapid: &Rapid) -> String {
-    let schedule = if process.job == nominal.job { rapid.schedule } else { process.job };
+    let schedule = schedule(process, nominal, rapid);
     format!("[{},0,{},[0,0,0,0,0,0,0,0,0]]", fixed(speed, 3), arc(process, rapid, feed, schedule))
 }
 
@@ -116,10 +122,9 @@ pub(super) fn weave(weave: &Weave, speed: f64) -> String {
 /// The data of the main module: tool, part, home with its external `axes`, speeds, zone and seam, one declaration each.
 /// A part on a turn table has its frame on the unit, whose own frame the controller knows.
 pub(super) fn declarations(
-    process: &Process,
     travel_speed: f64,
     rapid: &Rapid,
-    arc: bool,
+    seam: Option<&str>,
     table: Option<&str>,
     axes: &str,
 ) -> Vec<String> {
@@ -134,7 +139,7 @@ pub(super) fn declarations(
         };
         format!("TASK PERS wobjdata {}:=[FALSE,{frames}];", rapid.wobj)
     });
-    let seam = arc.then(|| format!("TASK PERS seamdata smBead:=[{}];", seam(process, rapid, &rapid.seam)));
+    let seam = seam.map(|seam| format!("TASK PERS seamdata smBead:=[{seam}];"));
     let zone = (rapid.zone > 0.0).then(|| format!("CONST zonedata zBead:={};", zone(rapid.zone)));
     let always = [
         format!("CONST jointtarget jHome:=[{},{axes}];", list(&rapid.home, 3)),

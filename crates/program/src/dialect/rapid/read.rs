@@ -174,8 +174,8 @@ struct Reader<'a> {
     lit_with: BTreeSet<String>,
     /// Outputs that are on, in upper case.
     outputs: BTreeSet<String>,
-    /// For the length of each weave, the least and greatest dwell at a side, s.
-    weaves: HashMap<String, [f64; 2]>,
+    /// For the module and the length of each weave, the least and greatest dwell at a side, s: layers may differ in it.
+    weaves: HashMap<(Option<String>, String), [f64; 2]>,
 }
 
 /// Output (in upper case) and state that a statement sets: `SetDO doArc,1;`, `Set doArc;`, `Reset doArc;`.
@@ -579,7 +579,7 @@ impl Reader<'_> {
             return;
         }
         let time = stay / speed;
-        let times = self.weaves.entry(format!("{length}")).or_insert([time, time]);
+        let times = self.weaves.entry((module.name.clone(), format!("{length}"))).or_insert([time, time]);
         *times = [times[0].min(time), times[1].max(time)];
         if times[1] > 1.1 * times[0] {
             let text = format!(

@@ -282,7 +282,7 @@ impl Section for Rapid {
 
     fn arc_end_time(&self, weld: &WeldSettings) -> Option<f64> {
         let (seam, ends, process) = (&self.seam, &weld.ends, &weld.process);
-        let filling = if ends.crater_fill_time > 0.0 { 0.0 } else { seam.fill_time };
+        let filling = if ends.fills_craters() { 0.0 } else { seam.fill_time };
         let back = if ends.wire_retract > 0.0 { retract_time(ends, process) } else { seam.rollback_time };
         let time = filling + seam.burnback_time + back + process.gas_postflow + process.arc_end_delay;
         (self.arc == RapidArc::Instructions).then_some(time)

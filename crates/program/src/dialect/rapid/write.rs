@@ -5,7 +5,7 @@
 //! lines that the profile gives. While welding, the welddata set the speed: speeds are rounded to the nominal one plus
 //! or minus whole multiples of `speed_step`, and each layer declares the few it uses, `LOCAL` to its module.
 
-use super::section::{Rapid, RapidArc, RapidModules, RapidSeam};
+use super::section::{Rapid, RapidArc, RapidModules};
 use super::{data, names};
 use crate::dialect::writing::frame::{self, Frame, Part, Piece, SUFFIX, Skippable, Syntax};
 use crate::dialect::writing::orientation::{self, Turn};
@@ -30,9 +30,11 @@ const ROUTINES: [&str; 5] = ["PROC ", "TRAP ", "FUNC ", "LOCAL PROC ", "LOCAL TR
 pub(super) struct AbbRapid {
     frame: Frame,
     rapid: Rapid,
-    /// The section's seam, without `[start_stop]`, and how that begins and ends passes.
-    plain: RapidSeam,
+    /// How passes begin and end.
     ends: StartStop,
+    /// The seamdata of the program, and those of the current layer if they differ.
+    seam: String,
+    own_seam: Option<String>,
     weave: Option<Weave>,
     orientation: String,
     /// External axes of targets.
@@ -52,12 +54,13 @@ impl AbbRapid {
     /// Begins the program of a part and names the module after the part.
     pub(super) fn new(job: &Job<'_>, rapid: Rapid) -> Self {
         let name = names::module_name(&job.part, 3, [&rapid.tool, &rapid.wobj]);
-        let (plain, ends) = (rapid.seam.clone(), job.weld.ends.clone());
-        let rapid = Rapid { seam: with_ends(&plain, &ends, &job.weld.process), ..rapid };
+        let ends = job.weld.ends.clone();
+        let seam = seam(&rapid, &ends, &job.weld.process, None);
         let orientation = data::quaternion(&rapid.orientation);
         let axes = data::external_axes(job.program, job.program.first_angles(), &rapid);
         let frame = Frame::new(job, name, MAX_COMMENT, &rapid);
-        Self { frame, rapid, plain, ends, weave: job.weave.cloned(), orientation, axes, speeds: Speeds::new() }
+        let (weave, speeds) = (job.weave.cloned(), Speeds::new());
+        Self { frame, rapid, ends, seam, own_seam: None, weave, orientation, axes, speeds }
     }
 
     fn with_arc(&self) -> bool {
@@ -128,11 +131,8 @@ impl AbbRapid {
     fn declare(&self, text: &mut String, layer: usize) {
         let nominal = &self.frame.process;
         let process = nominal.at_layer(layer);
-        if let Some(seam) = self.own_seam().filter(|_| self.with_arc()) {
-            text.push_str(&format!(
-                "  LOCAL PERS seamdata smLayer:=[{}];\r\n",
-                data::seam(nominal, &self.rapid, &seam)
-            ));
+        if let Some(seam) = self.own_seam.as_ref().filter(|_| self.with_arc()) {
+            text.push_str(&format!("  LOCAL PERS seamdata smLayer:=[{seam}];\r\n"));
         }
         for (i, &(speed, pace)) in self.speeds.iter().enumerate() {
             let speed = speed as f64 / 1000.0;
@@ -148,12 +148,6 @@ impl AbbRapid {
                 text.push_str(&format!("  LOCAL PERS weavedata wv{}:={data};\r\n", i + 1));
             }
         }
-    }
-
-    /// The seam of the current layer, if it differs from that of the program.
-    fn own_seam(&self) -> Option<RapidSeam> {
-        let seam = with_ends(&self.plain, &self.ends.at_layer(self.frame.layer), &self.frame.process);
-        (seam != self.rapid.seam).then_some(seam)
     }
 
     /// Number of the data for a speed at the current wire feed, from 1.
@@ -196,7 +190,7 @@ impl AbbRapid {
     /// The data of a move with the arc on: the welddata with this number, and the weavedata if the torch weaves.
     fn arc_data(&self, number: usize) -> String {
         let weave = self.weave.as_ref().map(|_| format!("\\Weave:=wv{number}"));
-        let seam = if self.own_seam().is_some() { "smLayer" } else { "smBead" };
+        let seam = if self.own_seam.is_some() { "smLayer" } else { "smBead" };
         format!("vTravel,{seam},wd{number}{}", weave.unwrap_or_default())
     }
 
@@ -235,7 +229,7 @@ impl AbbRapid {
 
     /// The data of the main module.
     fn declarations(&self, text: &mut String) {
-        let Frame { program, process, travel_speed, layers, .. } = &self.frame;
+        let Frame { program, travel_speed, layers, .. } = &self.frame;
         if program.restart {
             text.push_str(&format!("  ! {}\r\n  PERS num {START}:=0;\r\n", restart::comment(START)));
         }
@@ -244,8 +238,9 @@ impl AbbRapid {
             text.push_str("  ! mm to be added to the height of each layer\r\n");
             text.push_str(&format!("  PERS num nDz{{{layers}}}:=[{zeros}];\r\n"));
         }
-        let (arc, home) = (self.with_arc(), data::external_axes(program, program.first_angles(), &self.rapid));
-        for line in data::declarations(process, *travel_speed, &self.rapid, arc, self.table(), &home) {
+        let home = data::external_axes(program, program.first_angles(), &self.rapid);
+        let seam = self.with_arc().then_some(self.seam.as_str());
+        for line in data::declarations(*travel_speed, &self.rapid, seam, self.table(), &home) {
             text.push_str(&format!("  {line}\r\n"));
         }
         self.behind_main().0.iter().for_each(|line| text.push_str(&format!("  {line}\r\n")));
@@ -307,6 +302,8 @@ impl Syntax for AbbRapid {
     fn begin_layer(&mut self, program: &LayerProgram) {
         self.frame.feed = 1.0;
         self.speeds = self.speeds_of(program);
+        let own = seam(&self.rapid, &self.ends, &self.frame.process, Some(program.index));
+        self.own_seam = (own != self.seam).then_some(own);
     }
 
     /// The module, and its line in the list of modules.
@@ -420,16 +417,19 @@ fn routine(part: &Part) -> String {
     format!("Layer{}", part.number)
 }
 
-/// Crater filling and wire retraction at the end of a seam as in the section `start_stop`, if it sets them.
-fn with_ends(plain: &RapidSeam, ends: &StartStop, process: &Process) -> RapidSeam {
-    let mut seam = plain.clone();
-    if ends.crater_fill_time > 0.0 {
-        (seam.fill_time, seam.fill_feed) = (ends.crater_fill_time, ends.crater_power);
+/// The seamdata of the layer with this index, or those of the program. Where `[start_stop]` fills craters or draws the wire back, it
+/// replaces the section's seam.
+fn seam(rapid: &Rapid, ends: &StartStop, nominal: &Process, layer: Option<usize>) -> String {
+    let of_layer = layer.map(|layer| (ends.at_layer(layer), nominal.at_layer(layer)));
+    let (own, process) = of_layer.unwrap_or_else(|| (ends.clone(), nominal.clone()));
+    let mut seam = rapid.seam.clone();
+    if ends.fills_craters() {
+        (seam.fill_time, seam.fill_feed) = (own.crater_fill_time, own.crater_power);
     }
-    if ends.wire_retract > 0.0 {
-        seam.rollback_time = retract_time(ends, process);
+    if own.wire_retract > 0.0 {
+        seam.rollback_time = retract_time(&own, nominal);
     }
-    seam
+    data::seam(&process, nominal, rapid, &seam)
 }
 
 /// A statement of a routine on its own line.
