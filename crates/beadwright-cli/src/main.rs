@@ -118,6 +118,13 @@ enum Command {
     /// Write what a cell publishes over MQTT and OPC UA to logs for `record`; it only reads.
     #[cfg(feature = "listen")]
     Listen(listen::Arguments),
+    /// Write what a cell publishes to logs: this program was built without it.
+    #[cfg(not(feature = "listen"))]
+    #[command(disable_help_flag = true)]
+    Listen {
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
+        _arguments: Vec<std::ffi::OsString>,
+    },
     /// Reproduce the papers' experiments: our results next to theirs.
     Reproduce(reproduce::Arguments),
     /// Write a plan for other programs: tables, lines for ParaView, toolpaths in 3MF, the shape as built, drawings of layers.
@@ -164,6 +171,10 @@ fn main() -> ExitCode {
         Command::Record(arguments) => record::run(&arguments),
         #[cfg(feature = "listen")]
         Command::Listen(arguments) => listen::run(&arguments),
+        #[cfg(not(feature = "listen"))]
+        Command::Listen { .. } => Err(anyhow::anyhow!(
+            "this program was built without MQTT and OPC UA. Build it with them: cargo build --release --features listen"
+        )),
         Command::Reproduce(arguments) => reproduce::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Inspect(arguments) => inspect::run(&arguments),
