@@ -7,8 +7,11 @@ use std::cell::Cell;
 
 /// A pass with less than this fraction of its length over metal lies in the air.
 const LEAST: f64 = 0.5;
-/// A long pass is looked at in this many scattered places first, and is held if this fraction of them lies over metal:
-/// more than four standard deviations beyond [`LEAST`].
+/// A pass is held if this many scattered places, the first ones, all lie over metal: chance would bring that about once
+/// in four billion passes of which half lies over metal.
+const FIRST: usize = 32;
+/// A long pass is looked at in more scattered places, and is held if this fraction of them lies over metal: more than
+/// four standard deviations beyond [`LEAST`].
 const SCATTERED: usize = 500;
 const CLEARLY: f64 = 0.6;
 /// The golden section: multiples of it are spread evenly.
@@ -44,17 +47,18 @@ pub(super) struct Places {
 }
 
 /// Checks whether less than [`LEAST`] of a pass's length lies over metal, or a stretch as long as `places.bridge` is
-/// clear of it. `room` says whether there is metal within a reach (mm) of a place, and how far it surely goes on like
-/// this in a direction, mm.
+/// clear of it. `room` says whether there is metal within a reach (mm) of a place, and how much of a way from there (a
+/// vector) it surely goes on like this, mm.
 pub(super) fn hanging(pass: &Pass, places: Places, room: impl Fn(DVec2, DVec2, f64) -> Option<f64>) -> Option<Hanging> {
-    if is_clearly_held(pass, places, &room) && has_no_gap(pass, places, &room) {
+    let path = Path::of(pass);
+    if path.is_clearly_held(places, &room) && path.has_no_gap(places, pass.closed, &room) {
         return None;
     }
     let Places { step, bridge, clear } = places;
     let mut stretches: Vec<Stretch> = Vec::new();
-    let below = |p: DVec2, way: DVec2| match room(p, way, 0.0) {
+    let below = |p: DVec2, ahead: DVec2| match room(p, ahead, 0.0) {
         Some(room) => (Below::Metal, room),
-        None if room(p, way, clear).is_some() => (Below::Edge, 0.0),
+        None if room(p, ahead, clear).is_some() => (Below::Edge, 0.0),
         None => (Below::Air, 0.0),
     };
     for stretch in self::stretches(pass, step, below) {
@@ -87,61 +91,13 @@ pub(super) fn hanging(pass: &Pass, places: Places, room: impl Fn(DVec2, DVec2, f
     let in_the_air = all - free < (LEAST * all as f64).ceil() as usize;
     let hangs = in_the_air || clear.unwrap_or(0) as f64 * step >= bridge;
     let middle = (first + from + long / 2) % all;
-    hangs.then(|| Hanging { length: free as f64 * step, place: Path::of(pass).at(middle as f64 * step).0 })
+    hangs.then(|| Hanging { length: free as f64 * step, place: path.at(middle as f64 * step).0 })
 }
 
 /// Neighbouring places on a pass with the same below them.
 struct Stretch {
     below: Below,
     places: usize,
-}
-
-/// Whether clearly more than [`LEAST`] of a long pass lies over metal, by scattered places: they do not keep step with
-/// the beads that they cross.
-fn is_clearly_held(pass: &Pass, places: Places, room: impl Fn(DVec2, DVec2, f64) -> Option<f64>) -> bool {
-    if pass.length() < SCATTERED as f64 * places.step {
-        return false;
-    }
-    let path = Path::of(pass);
-    let scattered = (0..SCATTERED).map(|k| (k as f64 + (k as f64 * GOLDEN).fract()) / SCATTERED as f64 * path.length());
-    let held = scattered.filter(|along| room(path.at(*along).0, DVec2::ZERO, 0.0).is_some()).count();
-    held as f64 >= CLEARLY * SCATTERED as f64
-}
-
-/// Whether no stretch as long as a bridge is clear of all metal: not every place has to be looked at for that, only the
-/// last of each bridge that could begin after metal, and those beside it where it is clear.
-fn has_no_gap(pass: &Pass, places: Places, room: impl Fn(DVec2, DVec2, f64) -> Option<f64>) -> bool {
-    let Places { step, bridge, clear } = places;
-    if bridge == f64::INFINITY {
-        return true;
-    }
-    let (path, many) = (Path::of(pass), (bridge / step).ceil().max(1.0) as usize);
-    let all = (path.length() / step) as usize + 1;
-    // How many places after this one are surely as near to metal; none if it is clear.
-    let held = |place: usize| {
-        let (p, way, left) = path.at(place as f64 * step);
-        room(p, way, clear).map(|room| (room.min(left) / step) as usize)
-    };
-    if pass.closed && held(0).is_none() {
-        return false;
-    }
-    let mut place = many - 1;
-    while place < all {
-        place = match held(place) {
-            Some(more) => place + more + many,
-            None => {
-                let is_clear = |place: &usize| held(*place).is_none();
-                let before = (place + 1 - many..place).rev().take_while(is_clear).count();
-                let after = (place + 1..all).take(many - before - 1).take_while(is_clear).count();
-                if before + 1 + after >= many {
-                    return false;
-                }
-                // The place after the last clear one is not clear.
-                place + after + 1 + many
-            }
-        };
-    }
-    true
 }
 
 /// The pieces of a pass by the length of the pass up to each.
@@ -165,31 +121,80 @@ impl Path {
         self.pieces.last().map_or(0.0, |(from, piece)| from + piece.length)
     }
 
-    /// The place at a length along the path, its direction, and how far the piece goes on, mm.
-    fn at(&self, length: f64) -> (DVec2, DVec2, f64) {
-        let mut number = self.last.get();
-        while number > 0 && self.pieces[number].0 > length {
-            number -= 1;
-        }
-        while self.pieces.get(number + 1).is_some_and(|(from, _)| *from < length) {
-            number += 1;
-        }
+    /// The place at a length along the path, and the rest of its piece as a vector, mm.
+    fn at(&self, length: f64) -> (DVec2, DVec2) {
+        let begins_before = |number: usize| self.pieces.get(number).is_some_and(|(from, _)| *from < length);
+        let is_last_before = |number: &usize| begins_before(*number) && !begins_before(number + 1);
+        let last = self.last.get();
+        let near = (last..last + 3).find(is_last_before);
+        let number = near.unwrap_or_else(|| self.pieces.partition_point(|(from, _)| *from < length).saturating_sub(1));
         self.last.set(number);
         let Some((from, piece)) = self.pieces.get(number) else { return Default::default() };
-        (piece.from + piece.axis * (length - from), piece.axis, (from + piece.length - length).max(0.0))
+        let along = length - from;
+        (piece.from + piece.axis * along, piece.axis * (piece.length - along).max(0.0))
+    }
+
+    /// Whether clearly more than [`LEAST`] of the pass lies over metal, by scattered places: they do not keep step with the
+    /// beads that they cross.
+    fn is_clearly_held(&self, places: Places, room: impl Fn(DVec2, DVec2, f64) -> Option<f64>) -> bool {
+        let place = |k: usize| self.at((k as f64 * GOLDEN).fract() * self.length()).0;
+        let is_held = |k: &usize| room(place(*k), DVec2::ZERO, 0.0).is_some();
+        let has = |number: usize| self.length() >= number as f64 * places.step;
+        if !has(FIRST) {
+            return false;
+        }
+        (0..FIRST).all(|k| is_held(&k))
+            || has(SCATTERED) && (0..SCATTERED).filter(is_held).count() as f64 >= CLEARLY * SCATTERED as f64
+    }
+
+    /// Whether no stretch as long as a bridge is clear of all metal: not every place has to be looked at for that, only the
+    /// last of each bridge that could begin after metal, and those beside it where it is clear.
+    fn has_no_gap(&self, places: Places, closed: bool, room: impl Fn(DVec2, DVec2, f64) -> Option<f64>) -> bool {
+        let Places { step, bridge, clear } = places;
+        if bridge == f64::INFINITY {
+            return true;
+        }
+        let many = (bridge / step).ceil().max(1.0) as usize;
+        let all = (self.length() / step) as usize + 1;
+        // How many places after this one are surely as near to metal; none if it is clear.
+        let held = |place: usize| {
+            let (p, ahead) = self.at(place as f64 * step);
+            room(p, ahead, clear).map(|room| (room / step) as usize)
+        };
+        if closed && held(0).is_none() {
+            return false;
+        }
+        let mut place = many - 1;
+        while place < all {
+            place = match held(place) {
+                Some(more) => place + more + many,
+                None => {
+                    let is_clear = |place: &usize| held(*place).is_none();
+                    let before = (place + 1 - many..place).rev().take_while(is_clear).count();
+                    let after = (place + 1..all).take(many - before - 1).take_while(is_clear).count();
+                    if before + 1 + after >= many {
+                        return false;
+                    }
+                    // The place after the last clear one is not clear.
+                    place + after + 1 + many
+                }
+            };
+        }
+        true
     }
 }
 
 /// The places on a pass, `step` (mm) apart, as stretches; neighbouring ones may be alike. `below` says what lies below a
-/// place, and how far in a direction it surely goes on, mm.
+/// place, and how much of a way from there (a vector) it surely goes on, mm.
 fn stretches(pass: &Pass, step: f64, below: impl Fn(DVec2, DVec2) -> (Below, f64)) -> impl Iterator<Item = Stretch> {
     // A piece, the length of the pass up to it, and up to the next place.
     let (mut pieces, mut piece, mut along, mut next) = (pieces(pass), None::<Bead>, 0.0, 0.0);
     std::iter::from_fn(move || {
         loop {
             if let Some(piece) = piece.as_ref().filter(|piece| next <= along + piece.length) {
-                let (below, room) = below(piece.from + piece.axis * (next - along), piece.axis);
-                let places = 1 + (room.min(along + piece.length - next) / step) as usize;
+                let ahead = piece.axis * (along + piece.length - next);
+                let (below, room) = below(piece.from + piece.axis * (next - along), ahead);
+                let places = 1 + (room / step) as usize;
                 next += places as f64 * step;
                 return Some(Stretch { below, places });
             }
@@ -236,16 +241,47 @@ mod tests {
 
     const PLACES: Places = Places { step: 0.5, bridge: f64::INFINITY, clear: CLEAR * WIDTH };
 
-    fn below(metal: &Metal, p: DVec2, way: DVec2) -> (Below, f64) {
-        match metal.room(p, way, 0.0) {
+    fn below(metal: &Metal, p: DVec2, ahead: DVec2) -> (Below, f64) {
+        match metal.room(p, ahead, 0.0) {
             Some(room) => (Below::Metal, room),
-            None if metal.room(p, way, CLEAR * WIDTH).is_some() => (Below::Edge, 0.0),
+            None if metal.room(p, ahead, CLEAR * WIDTH).is_some() => (Below::Edge, 0.0),
             None => (Below::Air, 0.0),
         }
     }
 
     fn points() -> impl Strategy<Value = Vec<DVec2>> {
         proptest::collection::vec((-30..30_i32, -30..30_i32).prop_map(|(x, y)| DVec2::new(x.into(), y.into())), 1..9)
+    }
+
+    /// Lines that begin and end anywhere, so far apart, turned.
+    fn any_zigzag() -> impl Strategy<Value = Vec<DVec2>> {
+        let ends = proptest::collection::vec((-30..0_i32, 0..30_i32), 3..80);
+        (ends, 0.5..2.2, 0.0..7.0).prop_map(|(ends, apart, angle)| {
+            let line = |(k, (low, high)): (usize, (i32, i32))| {
+                let (y, ends) = (apart * k as f64 - 20.0, if k % 2 == 0 { [low, high] } else { [high, low] });
+                ends.map(|x| DVec2::from_angle(angle).rotate(DVec2::new(f64::from(x), y)))
+            };
+            ends.into_iter().enumerate().flat_map(line).collect()
+        })
+    }
+
+    /// Checks each place of a pass over beads.
+    fn each_place_lies_over_what_was_found(beads: &[Pass], over: &Pass) -> Result<(), TestCaseError> {
+        let metal = Metal::of(beads, WIDTH);
+        let stretches = stretches(over, 0.5, |p, ahead| below(&metal, p, ahead));
+        let found = stretches.flat_map(|stretch| std::iter::repeat_n(stretch.below, stretch.places));
+        let mut number = 0;
+        for (k, found) in found.enumerate() {
+            let expected = by_all(beads, Path::of(over).at(k as f64 * 0.5).0);
+            prop_assert!(expected.is_none_or(|expected| expected == found), "place {k}");
+            number += 1;
+        }
+        let last = over.length() / 0.5;
+        prop_assert!(
+            over.points.len() < 2 || (f64::from(number) - 1.0 - last.floor()).abs() <= 1.0,
+            "{number} of {last}"
+        );
+        Ok(())
     }
 
     proptest! {
@@ -256,17 +292,16 @@ mod tests {
             closed in any::<bool>(),
         ) {
             let beads: Vec<Pass> = beads.into_iter().map(|(points, closed, width)| pass(points, closed, width)).collect();
-            let (over, metal) = (pass(over, closed, WIDTH), Metal::of(&beads, WIDTH));
-            let stretches = stretches(&over, 0.5, |p, way| below(&metal, p, way));
-            let found = stretches.flat_map(|stretch| std::iter::repeat_n(stretch.below, stretch.places));
-            let mut number = 0;
-            for (k, found) in found.enumerate() {
-                let expected = by_all(&beads, Path::of(&over).at(k as f64 * 0.5).0);
-                prop_assert!(expected.is_none_or(|expected| expected == found), "place {k}");
-                number += 1;
-            }
-            let last = over.length() / 0.5;
-            prop_assert!(over.points.len() < 2 || (f64::from(number) - 1.0 - last.floor()).abs() <= 1.0, "{number} of {last}");
+            each_place_lies_over_what_was_found(&beads, &pass(over, closed, WIDTH))?;
+        }
+
+        #[test]
+        fn stretches_across_zigzags_hold_what_lies_below_each_place(
+            beads in proptest::collection::vec(any_zigzag(), 1..3),
+            over in points(),
+        ) {
+            let beads: Vec<Pass> = beads.into_iter().map(|points| pass(points, false, WIDTH)).collect();
+            each_place_lies_over_what_was_found(&beads, &pass(over, false, WIDTH))?;
         }
     }
 
@@ -281,14 +316,14 @@ mod tests {
             let (over, metal, bridge) = (pass(over, false, WIDTH), Metal::of(&beads, WIDTH), f64::from(bridge) / 2.0);
             let places = Places { bridge, ..PLACES };
             let mut gap = 0;
-            let kinds = stretches(&over, 0.5, |p, way| below(&metal, p, way));
+            let kinds = stretches(&over, 0.5, |p, ahead| below(&metal, p, ahead));
             let longest = kinds.map(|stretch| {
                 gap = if stretch.below == Below::Air { gap + stretch.places } else { 0 };
                 gap
             }).max().unwrap_or_default();
             // Places that a bead touches may count as within it or not.
             let edge = (0..=(over.length() / 0.5) as usize).any(|k| by_all(&beads, Path::of(&over).at(k as f64 * 0.5).0).is_none());
-            let none = has_no_gap(&over, places, |p, way, reach| metal.room(p, way, reach));
+            let none = Path::of(&over).has_no_gap(places, false, |p, ahead, reach| metal.room(p, ahead, reach));
             // Where no gap is found there is none; where one may be, all places are looked at.
             prop_assert!(edge || !none || (longest as f64) * 0.5 < bridge, "{longest} places of {bridge} mm");
         }
@@ -318,7 +353,7 @@ mod tests {
                 0.1 * f64::from(percent),
             );
             let metal = Metal::of(&[lines], WIDTH);
-            let found = hanging(&over, PLACES, |p, way, reach| metal.room(p, way, reach));
+            let found = hanging(&over, PLACES, |p, ahead, reach| metal.room(p, ahead, reach));
             assert_eq!(found.is_some(), percent < 50, "{percent} %");
             if let Some(Hanging { length, place }) = found {
                 let free = f64::from(100 - percent) / 100.0;

@@ -1,5 +1,6 @@
 //! Where passes have laid metal.
 
+use super::block::blocks;
 use bead_plan::fill::line_index::cells_along;
 use bead_plan::pass::{Pass, Segment};
 use glam::DVec2;
@@ -14,8 +15,9 @@ const EDGE: f64 = 1e-9;
 /// Metal laid by passes.
 pub(super) struct Metal {
     cells: Cells,
-    /// The beads of each pass.
+    /// The beads of each pass, and their blocks.
     beads: Vec<Vec<Bead>>,
+    blocks: Vec<(Vec<Bead>, Vec<Option<u32>>)>,
     /// The pass and the bead on which the last place lay: the next place lies on the same one or near it.
     last: Cell<(usize, usize)>,
 }
@@ -46,6 +48,12 @@ impl Bead {
         (away - self.axis * away.dot(self.axis).clamp(0.0, self.length)).length_squared() <= half * half
     }
 
+    /// Whether a place is on its straight part.
+    fn is_beside(&self, p: DVec2) -> bool {
+        let away = p - self.from;
+        (0.0..=self.length).contains(&self.axis.dot(away)) && self.axis.perp_dot(away).abs() <= self.half
+    }
+
     /// How far the bead, wider by `reach` (mm) on both sides, surely goes on from a place on it in a direction (of length
     /// 1), mm: until it leaves its straight part.
     fn room(&self, p: DVec2, way: DVec2, reach: f64) -> f64 {
@@ -65,14 +73,36 @@ impl Bead {
 impl Metal {
     pub(super) fn of(passes: &[Pass], width: f64) -> Self {
         let beads: Vec<Vec<Bead>> = passes.iter().map(|pass| pass.segments().map(Bead::of).collect()).collect();
-        Self { cells: Cells::of(&beads, CLEAR * width), beads, last: Cell::default() }
+        let blocks = beads.iter().map(|beads| blocks(beads)).collect();
+        Self { cells: Cells::of(&beads, CLEAR * width), beads, blocks, last: Cell::default() }
     }
 
-    /// How far a bead within `reach` (mm, at most a [`CLEAR`] width) of a place surely remains within it in a direction
-    /// (of length 1), mm; `None` where there is none.
-    pub(super) fn room(&self, p: DVec2, way: DVec2, reach: f64) -> Option<f64> {
-        let (pass, bead) = self.bead_at(p, reach)?;
-        Some(self.beads[pass][bead].room(p, way, reach))
+    /// How much of the way `ahead` of a place, mm, beads are surely within `reach` (mm, at most a [`CLEAR`] width) of it;
+    /// `None` where there is none.
+    pub(super) fn room(&self, p: DVec2, ahead: DVec2, reach: f64) -> Option<f64> {
+        let mut bead = self.bead_at(p, reach)?;
+        let (way, far, mut room) = (ahead.normalize_or_zero(), ahead.length(), 0.0);
+        loop {
+            let at = p + way * room;
+            let block = self.block(bead).filter(|block| block.is_beside(at));
+            let (alone, together) =
+                (self.beads[bead.0][bead.1].room(at, way, reach), block.map(|b| b.room(at, way, 0.0)));
+            let more = alone.max(together.unwrap_or(0.0));
+            room += more;
+            if more <= EDGE || room >= far {
+                return Some(room.min(far));
+            }
+            match self.bead_at(p + way * room, reach) {
+                Some(next) => bead = next,
+                None => return Some(room),
+            }
+        }
+    }
+
+    /// The block to which a bead belongs.
+    fn block(&self, (pass, bead): (usize, usize)) -> Option<&Bead> {
+        let (blocks, of) = self.blocks.get(pass)?;
+        of.get(bead).copied().flatten().and_then(|block| blocks.get(block as usize))
     }
 
     /// The pass and the number in it of a bead within `reach` (mm) of a place.

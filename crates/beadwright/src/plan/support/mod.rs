@@ -1,5 +1,6 @@
 //! Whether passes lie on metal, judged by the beads of the passes below.
 
+mod block;
 mod hanging;
 mod metal;
 
@@ -116,9 +117,9 @@ impl Support {
             let bands = Bands::of_layer(layer, profile);
             let once = |p: DVec2| bands.as_ref().map_or(p, |bands| bands.place(p));
             // From one turn of the seam to the next no bead goes on.
-            let room = |p: DVec2, way: DVec2, reach: f64| {
+            let room = |p: DVec2, ahead: DVec2, reach: f64| {
                 let p = once(p);
-                let room = metal.room(p, way, reach).map(|room| if bands.is_none() { room } else { 0.0 });
+                let room = metal.room(p, ahead, reach).map(|room| if bands.is_none() { room } else { 0.0 });
                 room.or_else(|| within(p).then_some(0.0))
             };
             let bridge = if profile.prints() { f64::INFINITY } else { BRIDGE * width };
