@@ -278,8 +278,7 @@ fn verify(arguments: &Arguments, folder: &Path) -> anyhow::Result<()> {
     let mut broken = record::verify(&text, arguments.seal.as_deref(), &mut |name| {
         fs::read(folder.join(Path::new(name).file_name()?)).ok()
     });
-    let inputs = arguments.inputs()?;
-    broken.extend(record::other_inputs(&text, &mut |name| inputs.iter().find(|input| input.name == name).cloned()));
+    broken.extend(record::other_inputs(&text, &arguments.inputs()?));
     if arguments.json {
         let changed: Vec<String> = broken.iter().map(Broken::to_string).collect();
         writeln!(std::io::stdout(), "{:#}", serde_json::json!({ "whole": broken.is_empty(), "changed": changed }))?;

@@ -173,7 +173,8 @@ fn a_change_of_any_byte_is_found() {
     let build = run(&passes, Disturbed::Feed, 6);
     let settings = Settings::default();
     let trace = [("wire_batch".to_owned(), "4711 <A>".to_owned())];
-    let inputs = [FileHash::of("power.csv", b"rows")];
+    // Two logs have the same name.
+    let inputs = ["rows", "others"].map(|text| FileHash::of("power.csv", text.as_bytes()));
     let part = Part {
         header: &plan.header,
         layers: &plan.layers,
@@ -218,6 +219,13 @@ fn a_change_of_any_byte_is_found() {
     assert_eq!(other, [Broken::Changed(record::HTML.to_owned())]);
     assert_eq!(check(&text, Some("00")), [Broken::OtherSeal("00".to_owned())]);
     assert_eq!(check("{}", None), [Broken::Form]);
-    let own = record::other_inputs(&text, &mut |_| Some(FileHash::of("power.csv", b"row2")));
-    assert_eq!(own, [Broken::Changed("power.csv".to_owned())]);
+    let others = |given: &[&str]| {
+        let given: Vec<FileHash> = given.iter().map(|text| FileHash::of("power.csv", text.as_bytes())).collect();
+        record::other_inputs(&text, &given).len()
+    };
+    assert_eq!([others(&["rows", "others"]), others(&["others", "rows"]), others(&["others"]), others(&[])], [0; 4]);
+    assert_eq!([others(&["row2"]), others(&["rows", "other"]), others(&["a", "b"])], [1, 1, 2]);
+    assert_eq!(record::other_inputs(&text, &[FileHash::of("robot.csv", b"rows")]), []);
+    let changed = record::other_inputs(&text, &[FileHash::of("power.csv", b"row2")]);
+    assert_eq!(changed, [Broken::Changed("power.csv".to_owned())]);
 }
