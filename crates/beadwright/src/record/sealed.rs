@@ -48,6 +48,7 @@ impl Chained {
             "planned": Totals::planned(part),
             "recorded": Totals::recorded(part),
             "logs": part.record.logs,
+            "scans": part.scans,
             "findings": part.record.findings,
         });
         let head = head.to_string();
