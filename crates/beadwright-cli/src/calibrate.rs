@@ -3,9 +3,10 @@
 use crate::{file, profile, reach, say};
 use anyhow::Context;
 use beadwright::files::write_file;
-use beadwright::profile::edit;
+use beadwright::profile::{ProfileError, edit};
+use beadwright::robot::Frame;
 use beadwright::robot::calibrate::{self, AtAngle, Calibrated, Flange, Pair, Residuals, Touch, TurningAxis};
-use glam::{DMat3, DQuat, DVec3, EulerRot};
+use glam::{DMat3, DQuat, DVec3};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -57,9 +58,9 @@ struct Axis {
     /// other axes at 0.
     #[arg(long, value_name = "FILE.toml")]
     write: Option<PathBuf>,
-    /// Number of the axis in program.positioner, from the floor to the part.
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2), value_name = "N")]
-    axis: u8,
+    /// Number of the axis in program.positioner of a profile, from the floor to the part; by default 1.
+    #[arg(long, requires = "write", value_parser = clap::value_parser!(u8).range(1..=2), value_name = "N")]
+    axis: Option<u8>,
 }
 
 #[derive(clap::Args)]
@@ -101,10 +102,7 @@ impl Robot {
     }
 
     fn turn(self, values: &[f64]) -> DQuat {
-        let zyx = |[z, y, x]: [f64; 3]| {
-            let [z, y, x] = [z, y, x].map(f64::to_radians);
-            DQuat::from_euler(EulerRot::ZYX, z, y, x)
-        };
+        let zyx = |turns| Frame::from_zyx([0.0; 3], turns).rotation;
         match (self, values) {
             (Self::Kuka, &[a, b, c]) => zyx([a, b, c]),
             (Self::Fanuc | Self::Yaskawa, &[x, y, z]) => zyx([z, y, x]),
@@ -115,8 +113,7 @@ impl Robot {
     }
 
     fn written(self, turn: DQuat) -> String {
-        let (z, y, x) = turn.to_euler(EulerRot::ZYX);
-        let [z, y, x] = [z, y, x].map(f64::to_degrees);
+        let [z, y, x] = zyx(turn);
         match self {
             Self::Kuka => format!("A {z:.4} B {y:.4} C {x:.4}°"),
             Self::Fanuc => format!("W {x:.4} P {y:.4} R {z:.4}°"),
@@ -128,6 +125,11 @@ impl Robot {
             Self::Abb => format!("[{:.7}, {:.7}, {:.7}, {:.7}]", turn.w, turn.x, turn.y, turn.z),
         }
     }
+}
+
+/// Turns about z, the new y and the new x, °.
+fn zyx(rotation: DQuat) -> [f64; 3] {
+    Frame { rotation, ..Frame::IDENTITY }.zyx()
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
@@ -177,8 +179,8 @@ fn base(Posed { points, robot }: &Posed, cell: Option<&Path>) -> anyhow::Result<
         "{}: the frame is tilted by {leans:.1}°, but a cell can only hold a level one (within {UPRIGHT}°). Level the table, or leave out --write.",
         table.name
     );
-    let (about_z, ..) = place.turn.to_euler(EulerRot::ZYX);
-    let rotation = format!("{:.3}", about_z.to_degrees() + 0.0);
+    let [about_z, ..] = zyx(place.turn);
+    let rotation = format!("{:.3}", about_z + 0.0);
     write(cell, &[("part.position", array(place.at)), ("part.rotation", rotation)])?;
     placed(points.json, &found, *robot, "frame of the part", "touch")
 }
@@ -190,7 +192,7 @@ fn axis(Axis { points, write, axis }: &Axis) -> anyhow::Result<()> {
         rows.iter().map(|row| AtAngle { angle: row[0], at: DVec3::from_slice(&row[1..]) }).collect();
     let found = calibrate::axis(&measured).with_context(|| table.name.clone())?;
     if let Some(path) = write {
-        write_axis(path, usize::from(*axis) - 1, &found)?;
+        write_axis(path, *axis, &found)?;
     }
     let [direction, through] = [found.direction, found.centre].map(|v| v.to_array());
     let value = serde_json::json!({ "direction": direction, "direction_within": finite(found.direction_within),
@@ -214,36 +216,43 @@ fn axis(Axis { points, write, axis }: &Axis) -> anyhow::Result<()> {
 }
 
 /// Changes the axis of the turn table of a cell, or one of the positioner of a profile.
-fn write_axis(path: &Path, index: usize, found: &TurningAxis) -> anyhow::Result<()> {
+fn write_axis(path: &Path, number: Option<u8>, found: &TurningAxis) -> anyhow::Result<()> {
     let text = file::text(path)?;
-    let named = || path.display().to_string();
-    if let Ok(cell) = reach::parse_cell(path, &text) {
-        anyhow::ensure!(
-            cell.table.is_some(),
-            "{}: the cell has no turn table. Add [table] with its limits, or give the profile whose program.positioner holds the axis.",
-            named()
-        );
-        let leans = found.direction.z.abs().min(1.0).acos().to_degrees();
-        anyhow::ensure!(
-            leans < UPRIGHT,
-            "the axis leans by {leans:.1}°, but the turn table of a cell is vertical (within {UPRIGHT}°): put it into program.positioner \
-             of a profile."
-        );
-        let (place, way) = (format!("[{:.3}, {:.3}]", found.centre.x, found.centre.y), found.direction.z.signum());
-        return self::write(Some(path), &[("table.axis", place), ("table.direction", format!("{way:.0}"))]);
+    if !reach::is_cell(&text) {
+        return write_positioner(path, text, number.unwrap_or(1), found);
     }
-    let key = |name: &str| format!("program.positioner.axes.{index}.{name}");
+    let named = path.display();
+    anyhow::ensure!(number.is_none(), "{named}: a cell has only one turn table. Leave out --axis, or give a profile.");
+    anyhow::ensure!(
+        reach::parse_cell(path, &text)?.table.is_some(),
+        "{named}: the cell has no turn table. Add [table] with axis = [0, 0], direction = 1 and its limits, such as [-180, 180] (°), or \
+         give the profile whose program.positioner holds the axis."
+    );
+    let leans = found.direction.z.abs().min(1.0).acos().to_degrees();
+    anyhow::ensure!(
+        leans < UPRIGHT,
+        "{named}: the axis leans by {leans:.1}°, but the turn table of a cell is vertical (within {UPRIGHT}°). Write it into \
+         program.positioner of a profile."
+    );
+    let (place, way) = (format!("[{:.3}, {:.3}]", found.centre.x, found.centre.y), found.direction.z.signum());
+    write(Some(path), &[("table.axis", place), ("table.direction", format!("{way:.0}"))])
+}
+
+/// Changes an axis of the positioner of the profile in this text; `number` counts from 1.
+fn write_positioner(path: &Path, text: String, number: u8, found: &TurningAxis) -> anyhow::Result<()> {
+    let named = path.display().to_string();
+    let key = |name: &str| format!("program.positioner.axes.{}.{name}", number - 1);
     let values =
         [(key("direction"), format!("[{}]", shown(found.direction, 6))), (key("through"), array(found.centre))];
-    let text = values.iter().try_fold(text, |text, (key, value)| edit::with_value(&text, key, value)).with_context(|| {
-        format!(
-            "{}: program.positioner.axes has no axis {}. List the axes from the floor to the part with limits and speed; `beadwright \
-             profile positioner NAME` prints those of a built-in machine",
-            named(),
-            index + 1
-        )
+    let text = values.iter().try_fold(text, |text, (key, value)| edit::with_value(&text, key, value));
+    let text = text.map_err(|error| match error {
+        ProfileError::Key { .. } => anyhow::anyhow!(
+            "{named}: program.positioner.axes has no axis {number}. List the axes from the floor to the part with limits and speed; \
+             `beadwright profile positioner NAME` prints those of a built-in machine."
+        ),
+        other => anyhow::Error::from(other).context(named.clone()),
     })?;
-    profile::parse(&text, &profile::folder(&named()))?;
+    profile::parse(&text, &profile::folder(&named)).with_context(|| named.clone())?;
     Ok(write_file(path, text.as_bytes())?)
 }
 
@@ -253,8 +262,7 @@ fn scanner(Posed { points, robot }: &Posed, cell: Option<&Path>) -> anyhow::Resu
     let pairs: Vec<Pair> =
         rows.iter().map(|row| Pair { scanned: DVec3::from_slice(row), known: DVec3::from_slice(&row[3..]) }).collect();
     let found = calibrate::scanner(&pairs).with_context(|| table.name.clone())?;
-    let (z, y, x) = found.place.turn.to_euler(EulerRot::ZYX);
-    let rotation = format!("[{}]", shown(DVec3::new(z, y, x).map(f64::to_degrees), 4));
+    let rotation = format!("[{}]", shown(zyx(found.place.turn).into(), 4));
     write(cell, &[("scanner.position", array(found.place.at)), ("scanner.rotation", rotation)])?;
     placed(points.json, &found, *robot, "scanner in the robot's base", "target")
 }

@@ -124,6 +124,11 @@ impl Arguments {
     }
 
     fn plan(&self, task: &Task) -> anyhow::Result<Compared> {
+        anyhow::ensure!(
+            self.scanner.file().is_none(),
+            "{}: a plan is in the coordinates of the part. Leave out --scanner, or give a scan.",
+            self.scan.display()
+        );
         let source = Source::open(&self.scan)?;
         let profile = source.profile(&self.wanted)?;
         let part = self.part(&profile, task)?;

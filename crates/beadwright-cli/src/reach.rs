@@ -229,6 +229,12 @@ pub(crate) fn load_cell(name: &str) -> anyhow::Result<Cell> {
     parse_cell(path, &file::text(path)?)
 }
 
+/// Whether a text is meant as a cell, with or without faults: a cell has an arm, and a profile has none.
+pub(crate) fn is_cell(text: &str) -> bool {
+    let rest = text.lines().filter_map(|line| line.trim_start_matches([' ', '\t', '[']).strip_prefix("arm"));
+    rest.map(str::trim_start).any(|rest| rest.starts_with([']', '.', '=']))
+}
+
 /// The cell in the text of a file, which may name another one beside it.
 pub(crate) fn parse_cell(path: &Path, text: &str) -> anyhow::Result<Cell> {
     let beside = |urdf: &str| file::text(&path.with_file_name(urdf)).map_err(|e| format!("{e:#}"));

@@ -8,7 +8,7 @@ use beadwright::heat::{self, HeatSettings};
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::record::{
-    self, Broken, FileHash, Finding, Heights, JSON, Part, PlannedPass, Quantity, Record, Settings, Source,
+    self, Broken, FileHash, Finding, JSON, Moved, Part, PlannedPass, Quantity, Record, Scanned, Settings, Source,
 };
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     scanner: scanned::Scanner,
     /// How far the top of a pass may be from its planned height, mm; by default half of layers.height.
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", requires = "scan")]
     height: Option<f64>,
     /// Shortest stop of the build that is reported, s longer than planned.
     #[arg(long, value_name = "S")]
@@ -119,6 +119,7 @@ fn write(arguments: &Arguments) -> anyhow::Result<()> {
     let opened = program::Source::open(path)?;
     let plan = opened.plan().with_context(|| format!("{}: give the plan.json of the program", path.display()))?;
     let profile = opened.profile(&arguments.wanted)?;
+    let place = arguments.place(path, &plan.layers, &profile)?;
     let heat = arguments.temperatures.then(|| {
         let over = Some(plan.header.extent.seen_from_above());
         let settings = HeatSettings { interpass: None, over, ..profile.heat_settings()? };
@@ -138,9 +139,8 @@ fn write(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let settings = arguments.settings(record::settings(&profile));
     let mut record = record::join(&planned, &sources, &settings).with_context(|| format!("{}", path.display()))?;
-    for heights in arguments.heights(&plan.layers, &profile, &planned)? {
-        record.add_heights(&planned, &heights, &settings);
-    }
+    let scans = arguments.scans(&place, &plan.layers, &profile, &planned)?;
+    scans.iter().for_each(|scan| record.add_heights(&planned, &scan.shown.heights, &settings));
     drop(sources);
     let (trace, inputs) = (arguments.traced()?, arguments.inputs()?);
     let part = Part {
@@ -151,6 +151,7 @@ fn write(arguments: &Arguments) -> anyhow::Result<()> {
         record: &record,
         settings: &settings,
         trace: &trace,
+        scans: &scans,
         inputs: &inputs,
     };
     let sealed = part.files()?;
@@ -158,7 +159,8 @@ fn write(arguments: &Arguments) -> anyhow::Result<()> {
     sealed.files.iter().try_for_each(|(name, bytes)| folder.append(name, bytes))?;
     folder.commit()?;
     if arguments.json {
-        let said = serde_json::json!({ "findings": record.findings, "logs": record.logs, "seal": sealed.seal });
+        let Record { findings, logs, .. } = &record;
+        let said = serde_json::json!({ "findings": findings, "logs": logs, "scans": scans, "seal": sealed.seal });
         return Ok(writeln!(std::io::stdout(), "{said:#}")?);
     }
     print(&part, &sealed.seal, &arguments.output)
@@ -175,11 +177,14 @@ fn print(part: &Part<'_>, seal: &str, folder: &Path) -> anyhow::Result<()> {
             log.name, log.tally.rows, log.arcs, log.matched, log.within
         )?;
     }
-    let off: Vec<f64> = passes.iter().filter_map(|row| Some(row.off?.mean)).collect();
-    if !off.is_empty() {
-        let mean = off.iter().sum::<f64>() / off.len() as f64;
-        let scanned = if off.len() == 1 { "1 pass was".to_owned() } else { format!("{} passes were", off.len()) };
-        writeln!(out, "  {scanned} scanned: the tops are {mean:+.2} mm from the plan on average")?;
+    for Scanned { file, after_layer, shown, .. } in part.scans {
+        let ([seen, all], off) = (shown.passes, shown.off().map_or(0.0, |off| off.mean));
+        writeln!(
+            out,
+            "  {file:<24} {seen} of {all} passes of layer {after_layer}, {:.0} % of their length: the tops are {off:+.2} mm from the plan \
+             on average",
+            100.0 * shown.covered
+        )?;
     }
     let mut warnings = say::warnings();
     for Finding { sentence, .. } in findings.iter().take(SHOWN) {
@@ -209,6 +214,11 @@ fn name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
+/// `1 scan`, `2 scans`.
+fn several(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
 impl Arguments {
     fn settings(&self, usual: Settings) -> Settings {
         let mut windows: BTreeMap<Quantity, f64> = usual.windows.iter().copied().collect();
@@ -222,27 +232,44 @@ impl Arguments {
         }
     }
 
+    /// Where the scans lie; an error if they cannot be compared with layers of the plan.
+    fn place(&self, plan: &Path, layers: &[Layer], profile: &Profile) -> anyhow::Result<scanned::Place> {
+        let (scans, numbers) = (self.scan.len(), &self.after_layer);
+        anyhow::ensure!(
+            scans == numbers.len(),
+            "Each --scan needs its --after-layer ({}, {} given).",
+            several(scans, "scan"),
+            several(numbers.len(), "layer")
+        );
+        anyhow::ensure!(
+            scans > 0 || self.scanner.file().is_none(),
+            "--scanner says where scans lie: give them with --scan and --after-layer, or leave it out."
+        );
+        if let Some((_, number)) = numbers.iter().enumerate().find(|(k, number)| numbers[..*k].contains(number)) {
+            anyhow::bail!("--after-layer {number} is given twice: put the scans of a layer into one file.");
+        }
+        let known = |number: &u32| record::scannable(layers, profile, *number as usize).map(|_| ());
+        numbers.iter().try_for_each(known).with_context(|| plan.display().to_string())?;
+        self.scanner.place()
+    }
+
     /// What each scan shows of the passes of its layer.
-    fn heights(
+    fn scans(
         &self,
+        place: &scanned::Place,
         layers: &[Layer],
         profile: &Profile,
         planned: &[PlannedPass],
-    ) -> anyhow::Result<Vec<Vec<Heights>>> {
-        let (scans, numbers) = (self.scan.len(), self.after_layer.len());
-        anyhow::ensure!(scans == numbers, "{scans} scans and {numbers} layers: give --after-layer with each --scan.");
-        let twice = self.after_layer.iter().enumerate().find(|(k, number)| self.after_layer[..*k].contains(number));
-        if let Some((_, number)) = twice {
-            anyhow::bail!("--after-layer {number} is given twice: put the scans of a layer into one file.");
-        }
-        if scans == 0 {
+    ) -> anyhow::Result<Vec<Scanned>> {
+        if self.scan.is_empty() {
             return Ok(Vec::new());
         }
         let (task, bar) = progress::task()?;
         let of_scan = |(path, number): (&PathBuf, &u32)| {
-            let scan = self.scanner.read(path, 1.0, &task)?;
-            let found = record::heights(layers, profile, planned, &scan.points, *number as usize);
-            found.with_context(|| path.display().to_string())
+            let (scan, after_layer) = (place.read(path, 1.0, &task)?, *number as usize);
+            let shown = record::heights(layers, profile, planned, &scan.points, after_layer);
+            let shown = shown.with_context(|| path.display().to_string())?;
+            Ok(Scanned { file: name(path), after_layer, part_from_scanner: place.0.map(Moved::from), shown })
         };
         let all = self.scan.iter().zip(&self.after_layer).map(of_scan).collect();
         bar.finish_and_clear();
@@ -266,7 +293,8 @@ impl Arguments {
                 .and_then(|opened| FileHash::read(&name(path), opened))
                 .with_context(|| format!("{}", path.display()))
         };
-        self.plan.iter().chain(&self.source).chain(&self.scan).chain(&self.file).map(hash).collect()
+        let cell = self.scanner.file();
+        self.plan.iter().chain(&self.source).chain(&self.scan).chain(&cell).chain(&self.file).map(hash).collect()
     }
 }
 
@@ -278,8 +306,7 @@ fn verify(arguments: &Arguments, folder: &Path) -> anyhow::Result<()> {
     let mut broken = record::verify(&text, arguments.seal.as_deref(), &mut |name| {
         fs::read(folder.join(Path::new(name).file_name()?)).ok()
     });
-    let inputs = arguments.inputs()?;
-    broken.extend(record::other_inputs(&text, &mut |name| inputs.iter().find(|input| input.name == name).cloned()));
+    broken.extend(record::other_inputs(&text, &arguments.inputs()?));
     if arguments.json {
         let changed: Vec<String> = broken.iter().map(Broken::to_string).collect();
         writeln!(std::io::stdout(), "{:#}", serde_json::json!({ "whole": broken.is_empty(), "changed": changed }))?;

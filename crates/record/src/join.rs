@@ -110,6 +110,7 @@ fn row(
         peak,
         height: [None; 2],
         off: None,
+        scanned: None,
         notes: Vec::new(),
         findings: 0,
     }

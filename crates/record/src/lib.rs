@@ -45,7 +45,7 @@ pub use clock::Trust;
 pub use error::RecordError;
 pub use figures::Measured;
 pub use finding::{Finding, Kind};
-pub use height::Heights;
+pub use height::{Heights, Top};
 pub use join::join;
 pub use planned::{Place, PlannedPass, Spot};
 pub use quantity::Quantity;

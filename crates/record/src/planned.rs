@@ -75,20 +75,37 @@ impl PlannedPass {
         Spot { along, at: self.path.last().map_or(DVec3::ZERO, |last| last.at) }
     }
 
-    /// When the torch is at a distance along the pass, mm, and where it is.
-    pub fn at(&self, along: f64) -> (f64, Spot) {
-        let mut passed = 0.0;
-        for pair in self.path.windows(2) {
+    /// Places `step` mm apart along the pass, from its beginning: when the torch is there, s, and where. None unless `step` is positive.
+    ///
+    /// ```
+    /// use bead_record::{Place, PlannedPass};
+    /// use glam::DVec3;
+    ///
+    /// let place = |x: f64, y: f64, time: f64| Place { at: DVec3::new(x, y, 2.0), time, feed: 8.0, speed: 8.0 };
+    /// // 20 mm along x in 2 s, then 30 mm along y in 1 s.
+    /// let path = vec![place(0.0, 0.0, 5.0), place(20.0, 0.0, 7.0), place(20.0, 30.0, 8.0)];
+    /// let pass = PlannedPass {
+    ///     layer: 1, pass: 1, struck: 5.0, out: 8.0, path, current: None, voltage: None, temperature: None,
+    /// };
+    /// let places = pass.every(12.5);
+    /// assert_eq!(places.len(), 5);
+    /// assert_eq!((places[1].0, places[1].1.at), (6.25, DVec3::new(12.5, 0.0, 2.0)));
+    /// assert_eq!((places[4].0, places[4].1.along), (8.0, 50.0));
+    /// assert_eq!(places[2].1.at, DVec3::new(20.0, 5.0, 2.0));
+    /// ```
+    pub fn every(&self, step: f64) -> Vec<(f64, Spot)> {
+        let (mut places, mut passed, mut along) = (Vec::new(), 0.0, 0.0);
+        for pair in self.path.windows(2).filter(|_| step > 0.0) {
             let length = pair[0].at.distance(pair[1].at);
-            if along < passed + length {
-                let part = ((along - passed) / length).max(0.0);
+            while along <= passed + length {
+                let part = if length > 0.0 { (along - passed) / length } else { 0.0 };
                 let time = pair[0].time + part * (pair[1].time - pair[0].time);
-                return (time, Spot { along, at: pair[0].at.lerp(pair[1].at, part) });
+                places.push((time, Spot { along, at: pair[0].at.lerp(pair[1].at, part) }));
+                along = places.len() as f64 * step;
             }
             passed += length;
         }
-        let last = self.path.last();
-        (last.map_or(0.0, |last| last.time), Spot { along: passed, at: last.map_or(DVec3::ZERO, |last| last.at) })
+        places
     }
 
     /// The path between two planned times.

@@ -47,10 +47,12 @@ pub struct PassRow {
     pub before: [Option<f64>; 2],
     /// Greatest temperature during the pass, °C.
     pub peak: Option<f64>,
-    /// Mean height of its top where a scan lies over it, mm: planned, measured.
+    /// Mean height of its top where a scan shows it, mm: planned, measured.
     pub height: [Option<f64>; 2],
     /// Measured minus planned height along it, mm.
     pub off: Option<Measured>,
+    /// Fraction of its length, 0 to 1, that a scan shows; `None` if none was taken of its layer.
+    pub scanned: Option<f64>,
     /// What the operator noted.
     pub notes: Vec<String>,
     /// Number of findings.

@@ -46,7 +46,7 @@ impl Settings {
             ("the efficiency of the arc", self.efficiency, 0.01, 1.0, "(fraction of the power)"),
             ("the hottest start", self.hottest.unwrap_or(100.0), 0.0, 3000.0, "°C"),
             ("the shortest stop", self.stop, 0.1, 1e6, "s"),
-            ("the window of the height", self.height.unwrap_or(1.0), 0.01, 100.0, "mm"),
+            ("the window of the height", self.height.unwrap_or(1.0), 0.001, 100.0, "mm"),
         ];
         match window.chain(rest).find(|(_, value, low, high, _)| !(*low..=*high).contains(value)) {
             Some((name, value, low, high, unit)) => Err(RecordError::OutOfRange { name, value, low, high, unit }),

@@ -1,7 +1,7 @@
 //! An arm that can be moved, whatever its geometry: joint angles in ° as its maker's controller displays them, lengths
 //! in mm.
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, EulerRot};
 use std::sync::Arc;
 
 /// Angles of the six joints, °, as the maker's controller displays them.
@@ -19,6 +19,28 @@ pub struct Frame {
 impl Frame {
     /// The frame in which it is given.
     pub const IDENTITY: Self = Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY };
+
+    /// The frame with this origin, mm, and these turns about z, the new y and the new x, °.
+    ///
+    /// ```
+    /// use bead_robot::Frame;
+    /// use glam::DVec3;
+    ///
+    /// // A quarter of a turn about z, then one about the new x: z points along the old x.
+    /// let frame = Frame::from_zyx([10.0, 0.0, 0.0], [90.0, 0.0, 90.0]);
+    /// assert!(frame.apply(DVec3::Z).distance(DVec3::new(11.0, 0.0, 0.0)) < 1e-12);
+    /// assert!(DVec3::from(frame.zyx()).distance(DVec3::new(90.0, 0.0, 90.0)) < 1e-9);
+    /// ```
+    pub fn from_zyx(position: [f64; 3], turns: [f64; 3]) -> Self {
+        let [z, y, x] = turns.map(f64::to_radians);
+        Self { position: position.into(), rotation: DQuat::from_euler(EulerRot::ZYX, z, y, x) }
+    }
+
+    /// Its turns about z, the new y and the new x, °.
+    pub fn zyx(&self) -> [f64; 3] {
+        let (z, y, x) = self.rotation.to_euler(EulerRot::ZYX);
+        [z, y, x].map(f64::to_degrees)
+    }
 
     /// `inner` is given in this frame; returns it in this frame's own reference frame.
     pub fn then(&self, inner: &Self) -> Self {

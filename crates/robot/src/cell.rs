@@ -8,7 +8,7 @@ use crate::error::CellError;
 use crate::home::Home;
 use crate::urdf;
 use bead_part::text::toml::{explain, line_of, line_of_key, nearest};
-use glam::{DQuat, DVec3, EulerRot};
+use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 /// The built-in cells as (name, TOML text).
@@ -192,11 +192,11 @@ impl Cell {
 
     /// The torch's frame on the flange.
     pub fn flange_from_tool(&self) -> Frame {
-        let [z, y, x] = self.torch.rotation.map(f64::to_radians);
-        Frame { position: self.torch.position.into(), rotation: DQuat::from_euler(EulerRot::ZYX, z, y, x) }
+        Frame::from_zyx(self.torch.position, self.torch.rotation)
     }
 
-    /// The frame of the scanner in that of the part, if the cell has a scanner: points that it sees, where they lie on the part.
+    /// The frame of the scanner in that of the part, if the cell has a scanner: points that it sees, where they lie on the part, with
+    /// turn table and linear axis at 0.
     ///
     /// ```
     /// use bead_robot::{Cell, ScannerPlace};
@@ -212,10 +212,7 @@ impl Cell {
     /// ```
     pub fn part_from_scanner(&self) -> Option<Frame> {
         let ScannerPlace { position, rotation } = self.scanner?;
-        let [z, y, x] = rotation.map(f64::to_radians);
-        let turn = DQuat::from_euler(EulerRot::ZYX, z, y, x);
-        let base_from_scanner = Frame { position: position.into(), rotation: turn };
-        Some(self.part.base_from_part().inverse().then(&base_from_scanner))
+        Some(self.part.base_from_part().inverse().then(&Frame::from_zyx(position, rotation)))
     }
 
     fn first_broken(&self) -> Option<(&'static str, String, String)> {

@@ -130,6 +130,20 @@ fn axes_and_scanner_are_written_where_they_belong() {
     };
     let said = fails(&["axis", "table.csv", "--write", "none.toml"]);
     assert!(said.contains("none.toml: the cell has no turn table"), "{said}");
+    // What the message asks for is enough.
+    let asked = before.clone() + "\n[table]\naxis = [0, 0]\ndirection = 1\nlimits = [-180, 180]\n";
+    assert!(said.contains("[table] with axis = [0, 0], direction = 1 and its limits, such as [-180, 180]"), "{said}");
+    fs::write(at.join("none.toml"), &asked).unwrap();
+    json(at, &["axis", "table.csv", "--write", "none.toml"]);
+    // A cell with a fault is not taken for a profile.
+    fs::write(at.join("faulty.toml"), asked.replace("direction = 1", "direction = 2")).unwrap();
+    let said = fails(&["axis", "table.csv", "--write", "faulty.toml"]);
+    assert!(said.contains("faulty.toml: line") && said.contains("of the cell: table.direction = 2"), "{said}");
+    fs::write(at.join("broken.toml"), asked.replace("[0, 0]", "[0, 0")).unwrap();
+    let said = fails(&["axis", "table.csv", "--write", "broken.toml"]);
+    assert!(said.contains("broken.toml: line") && said.contains("of the cell"), "{said}");
+    let said = fails(&["axis", "table.csv", "--write", "none.toml", "--axis", "2"]);
+    assert!(said.contains("none.toml: a cell has only one turn table. Leave out --axis"), "{said}");
     let with_table = before.clone() + "\n[table]\naxis = [0, 0]   # measured\ndirection = 1\nlimits = [-180, 180]\n";
     fs::write(at.join("mine.toml"), &with_table).unwrap();
     json(at, &["axis", "table.csv", "--write", "mine.toml"]);
@@ -143,7 +157,20 @@ fn axes_and_scanner_are_written_where_they_belong() {
     let positioner = format!("inherits = \"cmt-steel-robots\"\n[program.positioner]\nturning = \"index\"\n{axes}");
     fs::write(at.join("profile.toml"), &positioner).unwrap();
     let said = fails(&["axis", "tilt.csv", "--write", "mine.toml"]);
-    assert!(said.contains("the axis leans by 90.0°"), "{said}");
+    assert!(said.contains("mine.toml: the axis leans by 90.0°"), "{said}");
+    // The faults of a profile are named with the file, and nothing else is blamed.
+    let faults = [
+        ("inherits = \"cmt-steel-robot\"\n", "cmt-steel-robot"),
+        ("inherits = \"cmt-steel-robots\"\n[bead]\nwidth = -1\n", "bead.width"),
+    ];
+    for (head, named) in faults {
+        fs::write(at.join("faulty.toml"), positioner.replace("inherits = \"cmt-steel-robots\"\n", head)).unwrap();
+        let said = fails(&["axis", "tilt.csv", "--write", "faulty.toml"]);
+        assert!(said.contains("faulty.toml: ") && said.contains(named) && !said.contains("has no axis"), "{said}");
+    }
+    fs::write(at.join("faulty.toml"), positioner.replace("[1, 0, 0]", "[1, 0, 0")).unwrap();
+    let said = fails(&["axis", "tilt.csv", "--write", "faulty.toml"]);
+    assert!(said.contains("faulty.toml: line 5 of the profile") && !said.contains("has no axis"), "{said}");
     json(at, &["axis", "tilt.csv", "--write", "profile.toml"]);
     json(at, &["axis", "table.csv", "--axis", "2", "--write", "profile.toml"]);
     let text = fs::read_to_string(at.join("profile.toml")).unwrap();
@@ -162,7 +189,11 @@ fn axes_and_scanner_are_written_where_they_belong() {
     )
     .unwrap();
     let said = fails(&["axis", "tilt.csv", "--write", "machine.toml"]);
-    assert!(said.contains("has no axis 1") && said.contains("profile positioner NAME"), "{said}");
+    assert!(
+        said.contains("machine.toml: program.positioner.axes has no axis 1")
+            && said.contains("profile positioner NAME"),
+        "{said}"
+    );
 
     let targets =
         "sx,sy,sz,x,y,z\n0,0,390,900,100,410\n100,0,390,1000,100,410\n0,100,390,900,0,410\n0,0,290,900,100,510\n";

@@ -66,45 +66,97 @@ fn a_scan_becomes_the_programs_that_follow() {
     assert!(value["layers"].as_u64() == Some(30) && value["clipped"].as_u64() < Some(5), "{again}");
 }
 
-/// The same scan in the coordinates of the scanner, which the cell places, leads to the same programs.
+/// Where the scanner of [`leaning_cell`] sees a point of the part, mm: written out, by matrices.
+pub(crate) fn seen_by_scanner(p: [f64; 3]) -> [f64; 3] {
+    let [turn, z, y, x] = [30.0_f64, 20.0, -15.0, 160.0].map(f64::to_radians);
+    // The part is turned about the vertical by 30° and lies at x 1200, y 0, z 500 mm.
+    let base = [1200.0 + turn.cos() * p[0] - turn.sin() * p[1], turn.sin() * p[0] + turn.cos() * p[1], 500.0 + p[2]];
+    let from = [base[0] - 1260.0, base[1] + 75.0, base[2] - 910.0];
+    // The axes of the scanner in the robot's base: the columns of Rz(20°) Ry(-15°) Rx(160°).
+    let axes = [
+        [z.cos() * y.cos(), z.sin() * y.cos(), -y.sin()],
+        [
+            z.cos() * y.sin() * x.sin() - z.sin() * x.cos(),
+            z.sin() * y.sin() * x.sin() + z.cos() * x.cos(),
+            y.cos() * x.sin(),
+        ],
+        [
+            z.cos() * y.sin() * x.cos() + z.sin() * x.sin(),
+            z.sin() * y.sin() * x.cos() - z.cos() * x.sin(),
+            y.cos() * x.cos(),
+        ],
+    ];
+    axes.map(|axis| axis[0] * from[0] + axis[1] * from[1] + axis[2] * from[2])
+}
+
+/// A cell with a part that is turned, and a scanner that looks at it askew.
+pub(crate) fn leaning_cell(at: &Path) -> String {
+    let cell = ok(at, &["reach", "--show", "kuka-kr20-r1810"]);
+    let turned = cell.replace("rotation = 0.0  ", "rotation = 30.0 ");
+    assert_ne!(cell, turned);
+    turned + "\n[scanner]\nposition = [1260, -75, 910]\nrotation = [20, -15, 160]\n"
+}
+
+/// The same scan in the coordinates of the scanner, which the cell places, leads to the same layers. Neither scan nor place is the same
+/// when mirrored or turned back.
 #[test]
 fn a_scan_in_the_scanners_coordinates_is_moved_to_the_part() {
     let folder = wall();
     let at = folder.path();
+    let z = layers(&at.join("plan"))[19]["z"].as_f64().unwrap();
+    // No point lies half way between two points of a grid.
+    let point = |k: i32| {
+        let (x, y) = (f64::from(k / 8) - 58.9871, f64::from(k % 8) * 0.4937 - 1.6213);
+        [x, y, z + 0.1 + 0.4 * x / 60.0 + 0.06 * y]
+    };
+    let points: Vec<[f64; 3]> = (0..112 * 8).map(point).collect();
+    let table = |points: &[[f64; 3]]| points.iter().map(|[x, y, z]| format!("{x},{y},{z}\n")).collect::<String>();
+    fs::write(at.join("scan.csv"), table(&points)).unwrap();
+    fs::write(at.join("seen.csv"), table(&points.iter().copied().map(seen_by_scanner).collect::<Vec<_>>())).unwrap();
+    fs::write(at.join("cell.toml"), leaning_cell(at)).unwrap();
     let adapt = |more: &[&str]| {
         let arguments =
             [&["adapt", "plan/plan.json", "--after-layer", "20", "-o", "next", "--json"][..], more].concat();
-        ok(at, &arguments)
+        let said: serde_json::Value = serde_json::from_str(&ok(at, &arguments)).unwrap();
+        (said, layers(&at.join("next")))
     };
-    let as_is = adapt(&["--scan", "scan.csv"]);
-    ok(at, &["reach", "--show", "kuka-kr20-r1810"]);
-    let mut cell = ok(at, &["reach", "--show", "kuka-kr20-r1810"]);
-    let said = {
-        fs::write(at.join("cell.toml"), &cell).unwrap();
-        refused(
-            at,
-            &["adapt", "plan/plan.json", "--scan", "scan.csv", "--after-layer", "20", "--scanner", "cell.toml"],
-            1,
-        )
+    let (as_is, own) = adapt(&["--scan", "scan.csv"]);
+    let (moved, others) = adapt(&["--scan", "seen.csv", "--scanner", "cell.toml"]);
+    for key in ["mean", "rms", "low", "high"] {
+        let [a, b] = [&as_is, &moved].map(|said| said["error"][key].as_f64().unwrap());
+        assert!((a - b).abs() < 1e-6, "{key}: {as_is} {moved}");
+    }
+    let heights = |layers: &[serde_json::Value]| -> Vec<f64> {
+        let passes = layers.iter().flat_map(|layer| layer["passes"].as_array().unwrap());
+        passes
+            .flat_map(|pass| serde_json::from_value::<Vec<[f64; 3]>>(pass["points"].clone()).unwrap())
+            .map(|p| p[2])
+            .collect()
     };
-    assert!(said.contains("the cell has no [scanner]"), "{said}");
-    let part = beadwright::robot::Cell::parse(&cell).unwrap().part;
-    let [x, y, z] = part.position;
-    // Above the part, looking down: its y and z point the other way.
-    cell += &format!("\n[scanner]\nposition = [{x}, {y}, {}]\nrotation = [{}, 0, 180]\n", z + 400.0, part.rotation);
-    fs::write(at.join("cell.toml"), cell).unwrap();
-    let scan = fs::read_to_string(at.join("scan.csv")).unwrap();
-    let row = |line: &str| match line.split(',').map(str::parse::<f64>).collect::<Result<Vec<_>, _>>() {
-        Ok(p) => format!("{},{},{}\n", p[0], -p[1], 400.0 - p[2]),
-        Err(_) => format!("{line}\n"),
+    let (own, others) = (heights(&own), heights(&others));
+    assert_eq!(own.len(), others.len());
+    let apart = own.iter().zip(&others).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-3, "the torch is {apart} mm higher or lower");
+}
+
+#[test]
+fn a_cell_without_a_scanner_is_refused_with_what_to_do() {
+    let folder = wall();
+    let at = folder.path();
+    fs::write(at.join("cell.toml"), ok(at, &["reach", "--show", "kuka-kr20-r1810"])).unwrap();
+    let adapt = |scan: &str, cell: &str| {
+        refused(at, &["adapt", "plan/plan.json", "--scan", scan, "--after-layer", "20", "--scanner", cell], 1)
     };
-    fs::write(at.join("seen.csv"), scan.lines().map(row).collect::<String>()).unwrap();
-    let moved = adapt(&["--scan", "seen.csv", "--scanner", "cell.toml"]);
-    let value = |said: &str| -> serde_json::Value { serde_json::from_str(said).unwrap() };
-    let (a, b) = (value(&as_is), value(&moved));
-    assert_eq!(a["layers"], b["layers"]);
-    let mean = |of: &serde_json::Value| of["error"]["mean"].as_f64().unwrap_or_else(|| panic!("{of}"));
-    assert!((mean(&a) - mean(&b)).abs() < 1e-6, "{a} {b}");
+    let said = adapt("scan.csv", "cell.toml");
+    assert!(said.contains("cell.toml: the cell has no [scanner]") && said.contains("--write cell.toml"), "{said}");
+    let said = adapt("scan.csv", "kuka-kr20-r1810");
+    assert!(said.contains("`beadwright reach --show kuka-kr20-r1810 > cell.toml`"), "{said}");
+    assert!(said.contains("--write cell.toml") && said.contains("give --scanner cell.toml"), "{said}");
+    // The cell is read before the scan.
+    assert!(adapt("nothing.csv", "cell.toml").contains("no [scanner]"));
+    // A plan is in the coordinates of the part.
+    let said = refused(at, &["deviation", "wall.stl", "plan/plan.json", "--scanner", "cell.toml"], 1);
+    assert!(said.contains("plan.json: a plan is in the coordinates of the part. Leave out --scanner"), "{said}");
 }
 
 #[test]

@@ -10,7 +10,7 @@ use super::area::{core, near};
 use super::surface::{Spread, Surface};
 use crate::deposit::Nominal;
 use crate::layer::Layer;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
@@ -41,8 +41,8 @@ pub struct Seen {
     pub core: Vec<usize>,
     /// Predicted height of each point of the grid above the layer's planned top, mm; `None` where there is no metal.
     pub predicted: Vec<Option<f64>>,
-    /// Where it was measured: the place (mm), and the median of measured minus predicted heights there, mm.
-    pub measured: Vec<(DVec2, f64)>,
+    /// The points of the grid at which it was measured, and the median of measured minus predicted heights there, mm.
+    pub measured: Vec<(usize, f64)>,
     /// Measured minus predicted heights inside the outline without its rim, mm.
     pub error: Spread,
     /// Points of the scan that were compared.
@@ -140,9 +140,7 @@ pub fn see(planned: &[Layer], number: usize, points: &[DVec3], nominal: Nominal)
     let (errors, covered) = filled(&surface, &cells, &core, &predicted, nominal.bead.width);
     surface.measure(number, layer, &errors);
     let error = surface.spread(&core);
-    let grid = surface.grid();
-    let place = |cell: &Cell| (grid.place(cell.at % grid.columns, cell.at / grid.columns), cell.error);
-    let measured = cells.iter().map(place).collect();
+    let measured = cells.iter().map(|cell| (cell.at, cell.error)).collect();
     Ok(Seen { surface, core, predicted, measured, error, points: inside, covered })
 }
 

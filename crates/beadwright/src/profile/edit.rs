@@ -4,7 +4,8 @@ use super::{Profile, ProfileError};
 use toml_edit::{DocumentMut, Item, Table, Value};
 
 /// The text of a profile with one value set, such as `45` for `fill.raster_angle`; a value that is not TOML is treated as
-/// text. In a list, the place of an element, from 0, is a part of the key: `program.positioner.axes.0.speed`. The only check is that the key can be placed there; [`Profile::parse`] checks the rest.
+/// text. In a list, the place of an element, from 0, is a part of the key: `program.positioner.axes.0.speed`. The only check
+/// is that the key can be placed there; [`Profile::parse`] checks the rest.
 ///
 /// ```
 /// use beadwright::profile::edit::with_value;

@@ -22,7 +22,7 @@ mod table;
 mod totals;
 
 pub use bead_record::*;
-pub use heights::heights;
+pub use heights::{HeightsError, Shown, heights, scannable};
 pub use learnt::{AsWelded, Estimate, Learnt, Lesson, as_welded};
 pub use planned::{planned, settings};
 pub use sealed::{Broken, Sealed, other_inputs, verify};
@@ -31,6 +31,8 @@ pub use totals::Totals;
 use crate::layer::Layer;
 use crate::plan::Header;
 use crate::profile::Profile;
+use crate::robot::Frame;
+use serde::Serialize;
 
 /// Name of the file that holds the record with its hashes.
 pub const JSON: &str = "record.json";
@@ -56,8 +58,39 @@ pub struct Part<'a> {
     pub settings: &'a Settings,
     /// What else belongs to the part, such as the batch of the wire: name and value.
     pub trace: &'a [(String, String)],
-    /// Plan and logs with their hashes.
+    /// The scans that gave heights.
+    pub scans: &'a [Scanned],
+    /// Plan, logs and scans with their hashes.
     pub inputs: &'a [FileHash],
+}
+
+/// A scan that gave heights.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Scanned {
+    /// Name of its file.
+    pub file: String,
+    /// Layer after which it was taken, from 1.
+    pub after_layer: usize,
+    /// How its points were moved from the coordinates of the scanner to those of the part; `None` if they were in the latter.
+    pub part_from_scanner: Option<Moved>,
+    /// What it shows.
+    #[serde(flatten)]
+    pub shown: Shown,
+}
+
+/// Where the frame of a scanner lies in that of the part.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Moved {
+    /// Its origin, mm.
+    pub position: [f64; 3],
+    /// Its turns about z, the new y and the new x, °.
+    pub rotation: [f64; 3],
+}
+
+impl From<Frame> for Moved {
+    fn from(frame: Frame) -> Self {
+        Self { position: frame.position.to_array(), rotation: frame.zyx() }
+    }
 }
 
 /// Why the files of a record cannot be made.

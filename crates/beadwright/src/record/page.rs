@@ -1,6 +1,6 @@
 //! `record.html`: what is doubtful first, then where it lies, the passes in figures, and how the logs were aligned.
 
-use super::{FileHash, Finding, Log, Part, PassRow, Quantity, Totals, Trust};
+use super::{FileHash, Finding, Log, Part, PassRow, Quantity, Scanned, Totals, Trust, heights};
 use crate::number::{fixed, hours};
 use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::{Row, Sheet};
@@ -26,6 +26,7 @@ pub(super) fn page(part: &Part<'_>, chain: String) -> Sheet {
     plots(&mut sheet, part);
     totals(&mut sheet, part);
     passes(&mut sheet, part);
+    scans(&mut sheet, part.scans);
     logs(&mut sheet, &part.record.logs);
     trace(&mut sheet, part, &chain);
     sheet
@@ -178,9 +179,10 @@ fn totals(sheet: &mut Sheet, part: &Part<'_>) {
 
 fn passes(sheet: &mut Sheet, part: &Part<'_>) {
     let number = |value: Option<f64>, digits: usize| value.map(|value| fixed(value, digits)).unwrap_or_default();
+    let scanned = if part.scans.is_empty() { &[][..] } else { &heights::COLUMNS };
     let rows = part.record.passes.iter().take(MOST).map(|row| {
         let mean = |quantity| row.measured(quantity).map(|measured| measured.mean);
-        plain([
+        let own = [
             row.layer.to_string(),
             row.pass.to_string(),
             fixed(row.length, 1),
@@ -194,12 +196,9 @@ fn passes(sheet: &mut Sheet, part: &Part<'_>) {
             number(mean(Quantity::Voltage), 1),
             number(row.heat[1], 0),
             number(row.before[1], 0),
-            number(row.off.map(|off| off.mean), 2),
-            number(row.off.map(|off| off.min), 2),
-            number(row.off.map(|off| off.max), 2),
-            row.findings.to_string(),
-            row.notes.join("; "),
-        ])
+        ];
+        let heights = scanned.iter().map(|(.., value, digits)| number(value(row), *digits));
+        plain(own.into_iter().chain(heights).chain([row.findings.to_string(), row.notes.join("; ")]))
     });
     let head = [
         "layer",
@@ -215,17 +214,36 @@ fn passes(sheet: &mut Sheet, part: &Part<'_>) {
         "voltage V",
         "heat input J/mm",
         "before °C",
-        "height off mm",
-        "least",
-        "greatest",
-        "findings",
-        "notes",
     ];
+    let scanned: Vec<String> = scanned.iter().map(|(name, unit, ..)| format!("{name} {unit}")).collect();
+    let head: Vec<&str> =
+        head.into_iter().chain(scanned.iter().map(String::as_str)).chain(["findings", "notes"]).collect();
     sheet.heading("Passes").table(&head, &rows.collect::<Vec<_>>());
     let all = part.record.passes.len();
     if all > MOST {
         sheet.text(&format!("{} more are in record.parquet and record.json.", all - MOST));
     }
+}
+
+/// The scans, and how much of their layers they show.
+fn scans(sheet: &mut Sheet, scans: &[Scanned]) {
+    if scans.is_empty() {
+        return;
+    }
+    let row = |scan: &Scanned| {
+        let [shown, of_layer] = scan.shown.passes;
+        let moved = if scan.part_from_scanner.is_some() { "the scanner" } else { "the part" };
+        plain([
+            scan.file.clone(),
+            scan.after_layer.to_string(),
+            moved.to_owned(),
+            scan.shown.points.to_string(),
+            format!("{shown} of {of_layer}"),
+            fixed(100.0 * scan.shown.covered, 0),
+        ])
+    };
+    let head = ["scan", "after layer", "coordinates of", "points over the layer", "passes shown", "length shown %"];
+    sheet.heading("Scans").table(&head, &scans.iter().map(row).collect::<Vec<_>>());
 }
 
 fn logs(sheet: &mut Sheet, logs: &[Log]) {

@@ -48,6 +48,7 @@ impl Chained {
             "planned": Totals::planned(part),
             "recorded": Totals::recorded(part),
             "logs": part.record.logs,
+            "scans": part.scans,
             "findings": part.record.findings,
         });
         let head = head.to_string();
@@ -167,14 +168,18 @@ struct Named {
     pass: usize,
 }
 
-/// Names of the inputs of a record whose bytes are others than those that were read.
-pub fn other_inputs(text: &str, file: &mut dyn FnMut(&str) -> Option<FileHash>) -> Vec<Broken> {
+/// The inputs of a record in place of which other files are `given`. Several may have the same name: each of the given files stands for
+/// the one with its hash, or else for one with its name.
+pub fn other_inputs(text: &str, given: &[FileHash]) -> Vec<Broken> {
     #[derive(Deserialize)]
     struct Head {
         inputs: Vec<FileHash>,
     }
     let head = text.split_once(PASSES).and_then(|(head, _)| serde_json::from_str::<Head>(&format!("{head}}}")).ok());
     let inputs = head.map(|head| head.inputs).unwrap_or_default();
-    let differs = |known: FileHash| file(&known.name).filter(|own| *own != known).map(|_| Broken::Changed(known.name));
-    inputs.into_iter().filter_map(differs).collect()
+    let mut given = given.to_vec();
+    let mut take = |is_it: &dyn Fn(&FileHash) -> bool| given.iter().position(is_it).map(|at| given.remove(at));
+    let others: Vec<FileHash> = inputs.into_iter().filter(|known| take(&|own| own == known).is_none()).collect();
+    let changed = others.into_iter().filter(|known| take(&|own| own.name == known.name).is_some());
+    changed.map(|known| Broken::Changed(known.name)).collect()
 }

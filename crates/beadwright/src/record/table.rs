@@ -1,6 +1,6 @@
 //! `record.parquet`: a row for each planned pass, with units in the names of the columns; NaN where nothing was planned or measured.
 
-use super::{Part, PassRow, Quantity};
+use super::{Part, PassRow, Quantity, heights};
 use crate::export::parquet::{Field, Values, table as parquet};
 use ::parquet::errors::ParquetError;
 use std::ops::Range;
@@ -55,11 +55,9 @@ fn numbers() -> Vec<(String, Number)> {
         add(format!("temperature before{end} (°C)"), Box::new(move |row| row.before[which]));
     }
     add("temperature peak (°C)".into(), Box::new(|row| row.peak));
-    add("height planned (mm)".into(), Box::new(|row| row.height[0]));
-    add("height (mm)".into(), Box::new(|row| row.height[1]));
-    add("height off least (mm)".into(), Box::new(|row| row.off.map(|off| off.min)));
-    add("height off greatest (mm)".into(), Box::new(|row| row.off.map(|off| off.max)));
-    add("height off deviation (mm)".into(), Box::new(|row| row.off.map(|off| off.deviation)));
+    for (name, unit, value, _) in heights::COLUMNS {
+        add(format!("{name} ({unit})"), Box::new(value));
+    }
     for quantity in Quantity::PLANNED {
         let name = |figure: &str| format!("{} {figure} ({})", quantity.word(), quantity.unit());
         add(name("planned"), Box::new(move |row| row.planned(quantity)));

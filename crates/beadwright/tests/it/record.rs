@@ -4,9 +4,12 @@
 #[path = "../../../record/tests/it/cell.rs"]
 mod cell;
 
+use crate::common;
 use beadwright::export::Beads;
+use beadwright::glam::{DVec2, DVec3};
 use beadwright::record::{
-    self, Broken, FileHash, Finding, Kind, Part, PlannedPass, Quantity, Record, Settings, join, planned, verify,
+    self, Broken, FileHash, Finding, HeightsError, Kind, Part, PlannedPass, Quantity, Record, Settings, join, planned,
+    verify,
 };
 use beadwright::{Plan, Profile, StrategyName, Task, example, plan};
 use cell::{Cell, Clock, Dice, Fault, log};
@@ -165,6 +168,77 @@ fn sixty_disturbances_are_found_at_their_pass_and_place() {
     }
 }
 
+/// The example wall, welded, with points of a scan after layer 20 that leans in x and y.
+fn scanned_wall() -> (Plan, Profile, Vec<DVec3>) {
+    let profile = Profile::built_in("cmt-steel-abb").unwrap();
+    let plan = plan("wall", &example::find("wall").unwrap().mesh(), &profile, &Task::new()).unwrap();
+    let z = plan.layers[19].z;
+    let point = |k: u32| DVec2::new(f64::from(k / 17) * 0.25 - 59.0, f64::from(k % 17) * 0.25 - 2.0);
+    let points = (0..473 * 17).map(point).map(|at| at.extend(z + lean(at))).collect();
+    (plan, profile, points)
+}
+
+/// Above the planned top, mm.
+fn lean(at: DVec2) -> f64 {
+    0.3 + 0.004 * at.x + 0.05 * at.y
+}
+
+#[test]
+fn measured_heights_are_those_of_the_scan_and_planned_ones_those_of_the_top() {
+    let (mut plan, profile, points) = scanned_wall();
+    // A torch that follows what lies below says nothing of the planned top.
+    plan.layers[19].passes.iter_mut().flat_map(|pass| &mut pass.points).for_each(|point| point.z += 0.7);
+    let own = (plan, profile);
+    let (passes, (plan, profile)) = (passes(&own), &own);
+    let shown = record::heights(&plan.layers, profile, &passes, &points, 20).unwrap();
+    let [own] = &shown.heights[..] else { panic!("{shown:?}") };
+    assert_eq!((passes[own.pass].layer, shown.passes), (20, [1, 1]));
+    assert!(own.share > 0.8 && (shown.covered - own.share).abs() < 1e-9, "{shown:?}");
+    for top in &own.tops {
+        let scanned = plan.layers[19].z + lean(top.spot.at.truncate());
+        assert!((top.measured - scanned).abs() < 0.03, "{top:?} {scanned}");
+        assert!((top.planned - plan.layers[19].z).abs() < 0.3 * plan.layers[19].height, "{top:?}");
+    }
+    let away = own.tops.iter().map(|top| top.spot.along);
+    assert!(away.clone().zip(away.skip(1)).all(|(a, b)| b > a), "in the order of welding");
+    // Half of the scan: half of the length, and nothing of the other half.
+    let half: Vec<DVec3> = points.iter().copied().filter(|point| point.x > 0.0).collect();
+    let shown = record::heights(&plan.layers, profile, &passes, &half, 20).unwrap();
+    assert!((0.4..0.55).contains(&shown.covered), "{}", shown.covered);
+    assert!(shown.heights[0].tops.iter().all(|top| top.spot.at.x > -0.5 * profile.bead.width), "{shown:?}");
+}
+
+#[test]
+fn scans_of_layers_that_cannot_be_compared_are_refused_with_their_reason() {
+    let (plan, profile, points) = scanned_wall();
+    let own = (plan, profile);
+    let (passes, (plan, profile)) = (passes(&own), &own);
+    let of = |passes: &[PlannedPass], number| {
+        record::heights(&plan.layers, profile, passes, &points, number).unwrap_err().to_string()
+    };
+    let layers = plan.layers.len();
+    for number in [0, layers + 1] {
+        assert!(of(&passes, number).contains(&format!("the plan has the layers 1 to {layers}")));
+    }
+    assert!(of(&passes, 40).contains("The plan is that high after layer 20"));
+    assert!(of(&passes[..19], 20).contains("the scan shows none of the passes of layer 20"));
+}
+
+#[test]
+fn a_turn_of_a_helix_is_refused_for_every_layer() {
+    let mut profile = common::profile_by("cmt-al2319-kuka", "wall");
+    profile.wall.helix = true;
+    let plan = common::planned_once("tube", &common::tube(40.0, 7.54, 40.0, 0.0), &profile).unwrap();
+    let planned = planned(&Beads { header: &plan.header, layers: &plan.layers, profile: &profile, heat: None });
+    assert_eq!(planned.len(), 1, "all turns are one pass");
+    let points = [DVec3::new(40.0, 0.0, 20.0); 3];
+    for number in 1..=plan.layers.len() {
+        let error = record::heights(&plan.layers, &profile, &planned, &points, number).unwrap_err();
+        assert_eq!(error, HeightsError::Helix { number });
+        assert!(error.to_string().starts_with(&format!("layer {number} is a turn of a helix")), "{error}");
+    }
+}
+
 #[test]
 fn a_change_of_any_byte_is_found() {
     let cross = cross();
@@ -173,7 +247,8 @@ fn a_change_of_any_byte_is_found() {
     let build = run(&passes, Disturbed::Feed, 6);
     let settings = Settings::default();
     let trace = [("wire_batch".to_owned(), "4711 <A>".to_owned())];
-    let inputs = [FileHash::of("power.csv", b"rows")];
+    // Two logs have the same name.
+    let inputs = ["rows", "others"].map(|text| FileHash::of("power.csv", text.as_bytes()));
     let part = Part {
         header: &plan.header,
         layers: &plan.layers,
@@ -182,6 +257,7 @@ fn a_change_of_any_byte_is_found() {
         record: &build.record,
         settings: &settings,
         trace: &trace,
+        scans: &[],
         inputs: &inputs,
     };
     let sealed = part.files().unwrap();
@@ -218,6 +294,13 @@ fn a_change_of_any_byte_is_found() {
     assert_eq!(other, [Broken::Changed(record::HTML.to_owned())]);
     assert_eq!(check(&text, Some("00")), [Broken::OtherSeal("00".to_owned())]);
     assert_eq!(check("{}", None), [Broken::Form]);
-    let own = record::other_inputs(&text, &mut |_| Some(FileHash::of("power.csv", b"row2")));
-    assert_eq!(own, [Broken::Changed("power.csv".to_owned())]);
+    let others = |given: &[&str]| {
+        let given: Vec<FileHash> = given.iter().map(|text| FileHash::of("power.csv", text.as_bytes())).collect();
+        record::other_inputs(&text, &given).len()
+    };
+    assert_eq!([others(&["rows", "others"]), others(&["others", "rows"]), others(&["others"]), others(&[])], [0; 4]);
+    assert_eq!([others(&["row2"]), others(&["rows", "other"]), others(&["a", "b"])], [1, 1, 2]);
+    assert_eq!(record::other_inputs(&text, &[FileHash::of("robot.csv", b"rows")]), []);
+    let changed = record::other_inputs(&text, &[FileHash::of("power.csv", b"row2")]);
+    assert_eq!(changed, [Broken::Changed("power.csv".to_owned())]);
 }

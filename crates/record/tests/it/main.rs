@@ -3,5 +3,6 @@
 
 mod cell;
 mod clocks;
+mod heights;
 mod joined;
 mod rows;
