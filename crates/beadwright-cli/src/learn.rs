@@ -75,6 +75,11 @@ pub(crate) fn into_sheet(sheet: &str, records: &[PathBuf]) -> anyhow::Result<Str
         let passes = read(path)?;
         // The numbers of the trials follow as a layer of several passes.
         let of_layer = |layer: usize| passes.iter().filter(move |pass| pass.layer == layer);
+        anyhow::ensure!(
+            of_layer(1).count() == 1,
+            "{}: its trials have several passes each. What was measured goes into sheets of single beads only.",
+            path.display()
+        );
         let single = (1..).map_while(|layer| match of_layer(layer).collect::<Vec<_>>()[..] {
             [pass] => Some(pass),
             _ => None,

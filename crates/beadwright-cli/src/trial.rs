@@ -6,9 +6,11 @@ use beadwright::Layer;
 use beadwright::files::{Folder, PLAN, write_file};
 use beadwright::number::fixed;
 use beadwright::pass::Pass;
+use beadwright::program::Weave;
 use beadwright::trial::{
     self, BeadSize, Design, Factor, Layout, More, Parameter, Plate, PlatePlan, Series, Shape, Slope, Sought,
 };
+use glam::DVec2;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -81,8 +83,8 @@ pub(crate) struct Measure {
     #[command(flatten)]
     scanner: scanned::Scanner,
     /// Number of the plate.
-    #[arg(long, default_value_t = 1, value_name = "N")]
-    plate: usize,
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..), value_name = "N")]
+    plate: u16,
     /// Sheet to write; the same one if left out.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -257,40 +259,48 @@ fn parse_length(text: &str) -> Result<f64, String> {
 
 pub(crate) fn measure(arguments: &Measure) -> anyhow::Result<()> {
     let text = file::text(&arguments.sheet)?;
-    let folder = arguments.sheet.parent().unwrap_or(Path::new("")).join(PlatePlan::name(arguments.plate.max(1) - 1));
+    let plate = usize::from(arguments.plate);
+    let folder = arguments.sheet.parent().unwrap_or(Path::new("")).join(PlatePlan::name(plate - 1));
     let source = program::Source::open(&folder.join(PLAN))?;
     let plan = source.plan().with_context(|| format!("{} holds no plan.json", folder.display()))?;
-    // A layer for each trial, and perhaps one with their numbers; walls have more.
-    let line = |pass: &Pass| match pass.points[..] {
-        [from, to] => Some([from.truncate(), to.truncate()]),
-        _ => None,
-    };
     let named = || arguments.sheet.display().to_string();
-    let count = trial::trials_on(&text, arguments.plate).with_context(named)?;
-    let level = plan.layers.first().map(|layer| layer.z);
-    let weave = plan.profile.as_ref().and_then(|profile| profile.weave.as_ref());
-    let sought = |layer: &Layer| {
-        let beads: Vec<_> = layer.passes.iter().map(line).collect::<Option<_>>()?;
-        let wider = weave.map_or(0.0, |weave| weave.at_layer(layer.index).amplitude - weave.amplitude);
-        let width = layer.passes.first()?.width.max();
-        (Some(layer.z) == level).then_some(Sought { beads, reach: REACH * width + wider.max(0.0) })
-    };
-    let trials: Option<Vec<Sought>> = plan.layers.iter().take(count).map(sought).collect();
-    let trials = trials.context(
+    let numbers = trial::numbers_on(&text, plate).with_context(named)?;
+    let trials = sought(&plan.layers, plan.profile.as_ref().and_then(|profile| profile.weave.as_ref())).context(
         "a scan is measured for straight beads, by themselves or side by side. Measure walls and corners by hand.",
     )?;
     let (task, bar) = progress::task()?;
     let scan = arguments.scanner.read(&arguments.scan, 1.0, &task)?;
     bar.finish_and_clear();
     let sizes = trial::measured(&scan.points, &trials).with_context(|| arguments.scan.display().to_string())?;
-    let sheet = trial::filled(&text, arguments.plate, &sizes).with_context(named)?;
+    let sheet = trial::filled(&text, plate, &sizes).with_context(named)?;
     let output = arguments.output.as_ref().unwrap_or(&arguments.sheet);
     write_file(output, sheet.as_bytes())?;
     let mut out = std::io::stdout().lock();
-    for (k, size) in sizes.iter().enumerate() {
-        writeln!(out, "  {:3}  {}", k + 1, size.as_ref().map_or("not seen in the scan".to_owned(), seen))?;
+    for (number, size) in numbers.iter().zip(&sizes) {
+        let unseen = || "not seen in the scan, or with too few points across it".to_owned();
+        writeln!(out, "  {number:>3}  {}", size.as_ref().map_or_else(unseen, seen))?;
     }
     Ok(writeln!(out, "\nfilled in {}", output.display())?)
+}
+
+/// Where the trials of a plate are sought: a layer for each, and perhaps one with their numbers, whose strokes are shorter. `None` if
+/// they are not straight beads on the plate.
+fn sought(layers: &[Layer], weave: Option<&Weave>) -> Option<Vec<Sought>> {
+    let line = |pass: &Pass| match pass.points[..] {
+        [from, to] => Some([from.truncate(), to.truncate()]),
+        _ => None,
+    };
+    let first = layers.first()?;
+    let [from, to] = line(first.passes.first()?)?;
+    let is_as_long = |[a, b]: &[DVec2; 2]| (a.distance(*b) - from.distance(to)).abs() < 0.01;
+    let trial = |layer: &Layer| {
+        let beads: Vec<_> = layer.passes.iter().map(line).collect::<Option<_>>()?;
+        let wider = weave.map_or(0.0, |weave| weave.at_layer(layer.index).amplitude - weave.amplitude);
+        let reach = REACH * layer.passes.first()?.width.max() + wider.max(0.0);
+        beads.iter().all(is_as_long).then_some(Sought { beads, reach })
+    };
+    let trials: Vec<Sought> = layers.iter().map_while(trial).collect();
+    layers[..trials.len()].iter().all(|layer| layer.z == first.z).then_some(trials)
 }
 
 /// What a scan says of a trial.
@@ -300,13 +310,14 @@ fn seen(BeadSize { width, height, more }: &BeadSize) -> String {
             format!("{width:.2} mm wide, {height:.2} mm high, deepest valley {valley:.2} mm")
         }
         More::One { width_varies, height_varies, hump, crater } => {
-            let fades = |slope: &Slope| slope.length.map_or(String::new(), |length| format!(" over {length:.0} mm"));
+            let slope = |slope: &Option<Slope>| {
+                let over = |length: Option<f64>| length.map_or(String::new(), |length| format!(" over {length:.0} mm"));
+                slope.map_or("not seen".to_owned(), |own| format!("{:.2} mm{}", own.height, over(own.length)))
+            };
             format!(
-                "{width:.2} ± {width_varies:.2} mm wide, {height:.2} ± {height_varies:.2} mm high, hump {:.2} mm{}, crater {:.2} mm{}",
-                hump.height,
-                fades(hump),
-                crater.height,
-                fades(crater)
+                "{width:.2} ± {width_varies:.2} mm wide, {height:.2} ± {height_varies:.2} mm high, hump {}, crater {}",
+                slope(hump),
+                slope(crater)
             )
         }
     }

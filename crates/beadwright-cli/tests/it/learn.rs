@@ -317,13 +317,21 @@ fn a_stepover_is_learnt_from_a_scan_of_beads_side_by_side() {
     let mine = beadwright::Profile::parse(&fs::read_to_string(at.join("mine.toml")).unwrap()).unwrap();
     assert!((mine.stepover() / width - 0.7).abs() < 0.02, "{said}");
     ok(at, &["profile", "check", "mine.toml"]);
-    // Shallower valleys need closer beads, and none lie as close as this would take.
+    // Shallower valleys need closer beads.
     let said = ok(at, &[&fit[..], &["--valley", &format!("{}", 0.05 * height), "--json"]].concat());
     let closer: serde_json::Value = serde_json::from_str(&said).unwrap();
     assert!((closer["lessons"][0]["after"].as_f64().unwrap() / width - 0.65).abs() < 0.02, "{said}");
     assert!(refused(at, &["bead", "fit", "trial/sheet.csv", "--valley", "0.2"], 1).contains("(-p)"));
     let said = refused(at, &["bead", "fit", "trial/sheet.csv", "--want", "6x2"], 1);
     assert!(said.contains("sheet of single beads"), "{said}");
+    let said = refused(at, &[&fit[..], &["--valley", "0"]].concat(), 1);
+    assert!(said.contains("weld beads closer together"), "{said}");
+    // A trial whose line was deleted must not shift the others.
+    let sheet = fs::read_to_string(at.join("trial/sheet.csv")).unwrap();
+    let fewer: Vec<&str> = sheet.lines().filter(|line| !line.starts_with("2,")).collect();
+    fs::write(at.join("trial/fewer.csv"), fewer.join("\n")).unwrap();
+    let said = refused(at, &["bead", "measure", "trial/fewer.csv", "scan.xyz"], 1);
+    assert!(said.contains("do not belong together"), "{said}");
     // Walls grow: their heights are not those of beads on a plate.
     ok(at, &["bead", "trial", "-p", "cmt-steel-robots", "--shape", "wall", "--vary", "dwell=0..60", "-o", "walls"]);
     let said = refused(at, &["bead", "measure", "walls/sheet.csv", "scan.xyz"], 1);

@@ -96,25 +96,21 @@ impl Found {
         values: fn(&[Option<f64>]) -> [Option<f64>; 2],
         lengths: [Option<usize>; 2],
     ) -> Result<Self, FoundError> {
-        let held = held(readings);
+        let trial = |(set, cells): &(Vec<f64>, Vec<Option<f64>>)| match values(cells) {
+            [Some(first), Some(second)] => {
+                let length = |k: usize, own: f64| cells[lengths[k]?].filter(|length| own > 0.0 && *length > 0.0);
+                let lengths = [length(0, first), length(1, second)];
+                Some(Trial { set: set.clone(), values: [first, second], lengths })
+            }
+            _ => None,
+        };
+        let kept: Vec<Trial> = readings.trials.iter().filter_map(trial).collect();
+        let held = held(&readings.factors, &kept);
         let is_held = |k: usize| held.iter().any(|(factor, _)| *factor == readings.factors[k]);
         let varied: Vec<usize> = (0..readings.factors.len()).filter(|k| !is_held(*k)).collect();
-        let mut measured = Measured::default();
-        let mut found = [Vec::new(), Vec::new()];
-        let mut faded = [Vec::new(), Vec::new()];
-        for (set, cells) in &readings.trials {
-            let [Some(first), Some(second)] = values(cells) else {
-                measured.unmeasured += 1;
-                continue;
-            };
-            measured.rows.push(varied.iter().map(|k| set[*k]).collect());
-            for (k, height) in [first, second].into_iter().enumerate() {
-                let length = lengths[k].and_then(|column| cells[column]).filter(|length| height > 0.0 && *length > 0.0);
-                faded[k].extend(length);
-            }
-            found[0].push(first);
-            found[1].push(second);
-        }
+        let unmeasured = readings.trials.len() - kept.len();
+        let mut measured = Measured { unmeasured, ..Measured::default() };
+        measured.rows = kept.iter().map(|trial| varied.iter().map(|k| trial.set[*k]).collect()).collect();
         if measured.rows.is_empty() {
             return Err(FoundError::Empty(names));
         }
@@ -125,8 +121,8 @@ impl Found {
         Ok(Self {
             subject,
             names,
-            responses: [0, 1].map(|k| surface.response(&found[k])),
-            lengths: faded.map(mean),
+            responses: [0, 1].map(|k| surface.response(&kept.iter().map(|trial| trial.values[k]).collect::<Vec<_>>())),
+            lengths: [0, 1].map(|k| mean(kept.iter().filter_map(|trial| trial.lengths[k]).collect())),
             held,
             notes: surface.notes.clone(),
             factors: surface.measured.inputs.iter().filter_map(|input| own(&input.name)).collect(),
@@ -239,14 +235,20 @@ impl Found {
     }
 }
 
-/// What all trials that were welded have in common of starts and ends.
-fn held(readings: &Readings) -> Vec<(Parameter, f64)> {
+/// A trial that was measured: the values of its factors, the two values that are fitted, and the lengths that belong to them.
+struct Trial {
+    set: Vec<f64>,
+    values: [f64; 2],
+    lengths: [Option<f64>; 2],
+}
+
+/// What all trials that were measured have in common of starts and ends.
+fn held(factors: &[Parameter], trials: &[Trial]) -> Vec<(Parameter, f64)> {
     let same = |(k, factor): (usize, &Parameter)| {
-        let mut values = readings.trials.iter().map(|(set, _)| set[k]);
-        let first = values.next()?;
-        (factor.is_of_ends() && values.all(|value| value == first)).then_some((*factor, first))
+        let first = trials.first()?.set[k];
+        (factor.is_of_ends() && trials.iter().all(|trial| trial.set[k] == first)).then_some((*factor, first))
     };
-    readings.factors.iter().enumerate().filter_map(same).collect()
+    factors.iter().enumerate().filter_map(same).collect()
 }
 
 /// A factor as an input, with the range of its values in column `k`.

@@ -24,10 +24,10 @@ pub enum More {
         width_varies: f64,
         /// Standard deviation of the height along the bead, mm.
         height_varies: f64,
-        /// How much higher it begins.
-        hump: Slope,
-        /// How much lower it ends.
-        crater: Slope,
+        /// How much higher it begins; `None` if the scan does not show its start.
+        hump: Option<Slope>,
+        /// How much lower it ends; `None` if the scan does not show its end.
+        crater: Option<Slope>,
     },
     /// Of beads side by side.
     Beside {
@@ -46,17 +46,17 @@ pub struct Slope {
 }
 
 impl BeadSize {
-    /// Columns of the sheet, with what goes into them.
-    pub(super) fn cells(&self) -> Vec<(&'static str, f64)> {
+    /// Columns of the sheet, with what goes into them; nothing where the scan does not show it.
+    pub(super) fn cells(&self) -> Vec<(&'static str, Option<f64>)> {
         let size = [(OVERLAP[0], Some(self.width)), (OVERLAP[1], Some(self.height))].into_iter();
-        let cells: Vec<(&'static str, Option<f64>)> = match self.more {
+        match self.more {
             More::Beside { valley } => size.chain([(OVERLAP[2], Some(valley))]).collect(),
             More::One { hump, crater, .. } => {
-                let ends = [Some(hump.height), hump.length, Some(crater.height), crater.length];
+                let slope = |slope: Option<Slope>| [slope.map(|own| own.height), slope.and_then(|own| own.length)];
+                let ends = [slope(hump), slope(crater)].concat();
                 size.chain(ENDS[2..].iter().copied().zip(ends)).collect()
             }
-        };
-        cells.into_iter().filter_map(|(column, value)| Some((column, value?))).collect()
+        }
     }
 }
 
@@ -66,11 +66,14 @@ pub(super) const LEFT_OUT: f64 = 0.2;
 const FADED: f64 = 0.45;
 /// Lengths of humps and craters that are tried.
 const LENGTHS: usize = 40;
-/// A hump or crater has a length if it is this many times as high as its standard error.
-const SEEN: f64 = 3.0;
+/// A hump or crater has a length if it is this many times as high as its standard error: of many lengths the best is taken, and
+/// beads are wavy.
+const SEEN: f64 = 5.0;
 /// Places across a stepover at which the heights of beads side by side are averaged, and how many of them need points.
 const ACROSS: f64 = 24.0;
-const ACROSS_LEAST: f64 = 5.0;
+const ACROSS_LEAST: usize = 3;
+/// Beads side by side lie at least this far apart, as a fraction of their reach.
+const APART: f64 = 0.05;
 /// Length of a slice across the bead, mm, and the points that it needs.
 const SLICE: f64 = 2.0;
 const POINTS: usize = 12;
@@ -99,15 +102,9 @@ pub struct Sought {
 /// # Errors
 /// [`MeasureError`] if the scan shows no bare plate.
 pub fn measured(scan: &[DVec3], trials: &[Sought]) -> Result<Vec<Option<BeadSize>>, MeasureError> {
-    let bare = |p: &&DVec3| {
-        let near = |trial: &Sought| {
-            let apart = |[from, to]: &[DVec2; 2]| {
-                planar::polyline::distance_squared_to_segment(p.truncate(), *from, *to).sqrt()
-            };
-            trial.beads.iter().any(|bead| apart(bead) <= trial.reach)
-        };
-        !trials.iter().any(near)
-    };
+    let apart =
+        |p: DVec3, [from, to]: [DVec2; 2]| planar::polyline::distance_squared_to_segment(p.truncate(), from, to).sqrt();
+    let bare = |p: &&DVec3| trials.iter().all(|trial| trial.beads.iter().all(|bead| apart(**p, *bead) > trial.reach));
     let plate = Plane::fitted(&scan.iter().filter(bare).copied().collect::<Vec<_>>()).ok_or(MeasureError::NoPlate)?;
     let size = |trial: &Sought| match &trial.beads[..] {
         [bead] => one(scan, *bead, trial.reach, &plate),
@@ -150,37 +147,50 @@ fn one(scan: &[DVec3], bead: [DVec2; 2], reach: f64, plate: &Plane) -> Option<Be
     };
     let ((width, width_varies), (height, height_varies)) = (spread(|size| size.0), spread(|size| size.1));
     let crowns: Vec<(f64, f64)> = sizes.iter().map(|(at, (_, height))| (*at, *height)).collect();
-    let [hump, crater] = ends(&crowns, length)?;
+    let [hump, crater] = ends(&crowns, length);
     Some(BeadSize { width, height, more: More::One { width_varies, height_varies, hump, crater } })
 }
 
 /// Hump and crater of a bead of this length (mm) with crowns at these places along it (mm): even slopes, as the deposit model lays
-/// them, that with a level bead between come nearest to all crowns (least squares).
-fn ends(crowns: &[(f64, f64)], length: f64) -> Option<[Slope; 2]> {
+/// them, that with a level bead between come nearest to all crowns (least squares). `None` at an end without crowns.
+fn ends(crowns: &[(f64, f64)], length: f64) -> [Option<Slope>; 2] {
+    let from = |end: usize, at: f64| if end == 0 { at } else { length - at };
     let heights: Vec<f64> = crowns.iter().map(|(_, height)| *height).collect();
-    let slope = |over: f64, from: &dyn Fn(f64) -> f64| -> Vec<f64> {
-        crowns.iter().map(|(at, _)| (1.0 - from(*at) / over).max(0.0)).collect()
+    let tried = |end: usize| -> Vec<Option<f64>> {
+        let nearest = crowns.iter().map(|(at, _)| from(end, *at)).fold(f64::INFINITY, f64::min);
+        let (least, most) = (nearest + 2.0 * SLICE, FADED * length);
+        if nearest > SLICE || most <= least {
+            return vec![None];
+        }
+        (0..LENGTHS).map(|k| Some(least + (most - least) * k as f64 / (LENGTHS - 1) as f64)).collect()
     };
-    let lengths = || {
-        let (least, most) = (2.0 * SLICE, FADED * length);
-        (0..LENGTHS).map(move |k| least + (most - least) * k as f64 / (LENGTHS - 1) as f64)
+    let fit = |over: [Option<f64>; 2]| -> Option<(f64, [Option<Slope>; 2])> {
+        let slope = |end: usize| {
+            let over = over[end]?;
+            Some(crowns.iter().map(|(at, _)| (1.0 - from(end, *at) / over).max(0.0)).collect::<Vec<f64>>())
+        };
+        let columns: Vec<Vec<f64>> =
+            [Some(vec![1.0; crowns.len()]), slope(0), slope(1)].into_iter().flatten().collect();
+        let factored = Factored::new(&columns);
+        let values = factored.solve(&heights);
+        if values.len() < columns.len() {
+            return None;
+        }
+        let laid = |k: usize| columns.iter().zip(&values).map(|(column, value)| column[k] * value).sum::<f64>();
+        let missed = (0..crowns.len()).map(|k| (heights[k] - laid(k)).powi(2)).sum::<f64>();
+        let scatter = (missed / crowns.len().saturating_sub(columns.len()).max(1) as f64).sqrt();
+        let mut column = 0;
+        let slope = [0, 1].map(|end| {
+            let over = over[end]?;
+            column += 1;
+            let height = if end == 0 { values[column] } else { -values[column] };
+            let error = scatter * factored.error_of(column);
+            Some(Slope { height, length: (height > SEEN * error).then_some(over) })
+        });
+        Some((missed, slope))
     };
-    let fit = |[over_hump, over_crater]: [f64; 2]| {
-        let columns = [vec![1.0; crowns.len()], slope(over_hump, &|at| at), slope(over_crater, &|at| length - at)];
-        let [level, hump, crater] = Factored::new(&columns).solve(&heights)[..] else { return None };
-        let miss = |k: usize| heights[k] - level - hump * columns[1][k] - crater * columns[2][k];
-        let missed = (0..crowns.len()).map(|k| miss(k).powi(2)).sum::<f64>();
-        Some((missed, [(hump, over_hump), (-crater, over_crater)]))
-    };
-    let all = lengths().flat_map(|hump| lengths().map(move |crater| [hump, crater]));
-    let (missed, slopes) = all.filter_map(fit).min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let scatter = (missed / crowns.len().saturating_sub(3).max(1) as f64).sqrt();
-    let slope = |(height, over): (f64, f64)| {
-        // The mean square of a slope that falls from 1 to 0 is a third.
-        let error = scatter * (3.0 * length / over / crowns.len() as f64).sqrt();
-        Slope { height, length: (height > SEEN * error).then_some(over) }
-    };
-    Some(slopes.map(slope))
+    let all = tried(0).into_iter().flat_map(|hump| tried(1).into_iter().map(move |crater| [hump, crater]));
+    all.filter_map(fit).min_by(|a, b| a.0.total_cmp(&b.0)).map_or([None; 2], |(_, slopes)| slopes)
 }
 
 fn beside(scan: &[DVec3], beads: &[[DVec2; 2]], reach: f64, plate: &Plane) -> Option<BeadSize> {
@@ -190,13 +200,16 @@ fn beside(scan: &[DVec3], beads: &[[DVec2; 2]], reach: f64, plate: &Plane) -> Op
     let mut lines: Vec<f64> = beads.iter().map(|[from, _]| direction.perp_dot(*from - bead[0])).collect();
     lines.sort_by(f64::total_cmp);
     let stepover = lines.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    if stepover < APART * reach {
+        return None;
+    }
     let (low, high) = (lines[0] - reach, lines[lines.len() - 1] + reach);
     let middle = LEFT_OUT * length..(1.0 - LEFT_OUT) * length;
     let points = along(scan, bead, plate).filter(|p| middle.contains(&p.x) && (low..high).contains(&p.y));
     let heights = averaged(points, low, high, stepover / ACROSS);
     // The crown of each bead, within half a stepover of where it was planned.
     let near = |line: f64| heights.iter().filter(move |(at, _)| (at - line).abs() <= 0.5 * stepover);
-    if lines.iter().any(|line| (near(*line).count() as f64) < ACROSS_LEAST) {
+    if lines.iter().any(|line| near(*line).count() < ACROSS_LEAST) {
         return None;
     }
     let highest = |line: &f64| near(*line).copied().max_by(|a, b| a.1.total_cmp(&b.1));

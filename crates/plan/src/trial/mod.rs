@@ -30,4 +30,4 @@ pub use found::{Best, Found, FoundError, Subject, Widest};
 pub use measure::{BeadSize, MeasureError, More, Slope, Sought, measured};
 pub use plate::{Layout, Nominal, Placed, Plate, PlateError, Series, Span};
 pub use shape::Shape;
-pub use sheet::{SheetError, TrialWelded, as_measured, csv, filled, plates, trials_on};
+pub use sheet::{SheetError, TrialWelded, as_measured, csv, filled, numbers_on, plates};

@@ -155,6 +155,9 @@ impl Series {
     /// Beads are measured in their middle, which hot starts and lead-outs must not reach.
     fn leave_room_between_leads(&self) -> Result<(), PlateError> {
         let length = self.layout.length;
+        if matches!(self.shape, Shape::Wall(_) | Shape::Corner) {
+            return Ok(());
+        }
         let lead = |trial: &Placed, [over, power]: [Parameter; 2]| {
             let own =
                 |parameter| self.value(&trial.values, parameter).or(self.nominal.end(parameter)).unwrap_or_default();

@@ -78,7 +78,7 @@ pub fn as_measured(sheet: &str, plate: usize, trials: &[TrialWelded]) -> Result<
             ("measured_current_a", welded.current),
             ("measured_voltage_v", welded.voltage),
         ];
-        known.into_iter().filter_map(|(column, value)| Some((column, value?))).collect()
+        known.into_iter().filter(|(_, value)| value.is_some()).collect()
     };
     with_cells(sheet, plate, &trials.iter().map(cells).collect::<Vec<_>>())
 }
@@ -94,14 +94,15 @@ pub fn plates(sheet: &str) -> Result<usize, SheetError> {
     Ok(table.rows.iter().filter_map(number).max().unwrap_or(0))
 }
 
-/// The number of trials of a sheet that are welded on plate `plate`, from 1.
+/// The numbers of the trials of a sheet that are welded on plate `plate`, from 1.
 ///
 /// # Errors
 /// [`SheetError`] if the text is no sheet of trials.
-pub fn trials_on(sheet: &str, plate: usize) -> Result<usize, SheetError> {
+pub fn numbers_on(sheet: &str, plate: usize) -> Result<Vec<String>, SheetError> {
     let table = Table::of(sheet)?;
-    let column = table.plate()?;
-    Ok(table.on_plate(column, plate).count())
+    let (plates, number) = (table.plate()?, table.column("bead").ok_or(SheetError::Column("bead"))?);
+    let of = |(_, cells): &(usize, Vec<String>)| cells.get(number).cloned().unwrap_or_default();
+    Ok(table.on_plate(plates, plate).map(of).collect())
 }
 
 /// What was measured with the trials of a sheet.
@@ -176,7 +177,7 @@ impl Table {
 }
 
 /// The sheet with other numbers in some columns of the trials of a plate; columns that it lacks are left out.
-fn with_cells(sheet: &str, plate: usize, trials: &[Vec<(&'static str, f64)>]) -> Result<String, SheetError> {
+fn with_cells(sheet: &str, plate: usize, trials: &[Vec<(&'static str, Option<f64>)>]) -> Result<String, SheetError> {
     let table = Table::of(sheet)?;
     let rows: Vec<&(usize, Vec<String>)> = table.on_plate(table.plate()?, plate).collect();
     let (between, columns) = (table.between, &table.columns);
@@ -195,7 +196,7 @@ fn with_cells(sheet: &str, plate: usize, trials: &[Vec<(&'static str, f64)>]) ->
         let mut cells = cells.clone();
         cells.resize(columns.len().max(cells.len()), String::new());
         let placed = changed.iter().filter_map(|(name, value)| Some((table.column(name)?, *value)));
-        placed.for_each(|(place, value)| cells[place] = decimal(value));
+        placed.for_each(|(place, value)| cells[place] = value.map(decimal).unwrap_or_default());
         text[*number] = cells.iter().map(quoted).collect::<Vec<_>>().join(&between.to_string());
     }
     Ok(text.join("\n") + "\n")

@@ -464,7 +464,7 @@ fn humps_and_craters_in_a_scan_are_as_high_and_as_long_as_they_were_made() {
                 };
                 let scan = scanned(degrees, noise, random, height);
                 match trial::measured(&scan, &[Sought { beads: vec![bead], reach: 8.0 }]).unwrap()[0].unwrap().more {
-                    More::One { hump, crater, .. } => [hump, crater],
+                    More::One { hump, crater, .. } => [hump, crater].map(Option::unwrap),
                     More::Beside { .. } => panic!("one bead was welded"),
                 }
             };
@@ -474,8 +474,36 @@ fn humps_and_craters_in_a_scan_are_as_high_and_as_long_as_they_were_made() {
             assert!((hump.length.unwrap() - 9.0).abs() < 2.5 && (crater.length.unwrap() - 24.0).abs() < 2.5, "{case}");
             let [hump, crater] = seen([0.0, 1.0], [0.0, 1.0], &mut random);
             assert!(hump.height.abs() < most && crater.height.abs() < most, "{noise} {degrees}: {hump:?} {crater:?}");
+            assert!(noise == 0.0 || hump.length.is_none() && crater.length.is_none(), "{hump:?} {crater:?}");
         }
     }
+}
+
+/// A scan that begins late shows the size of a bead and its crater, and says nothing of its hump; a later scan takes back what an
+/// earlier one found.
+#[test]
+fn an_end_that_a_scan_does_not_show_is_left_empty() {
+    let mut random = Random::new(3);
+    let height = |p: DVec2| {
+        let inside = (0.0..=90.0).contains(&p.x);
+        if inside { (2.0 - (1.0 - (90.0 - p.x) / 20.0).max(0.0)) * across(p.y, 6.0) } else { 0.0 }
+    };
+    let mut scan = scanned(0.0, 0.05, &mut random, height);
+    let sought = [Sought { beads: vec![[DVec2::ZERO, DVec2::new(90.0, 0.0)]], reach: 8.0 }];
+    let whole = trial::measured(&scan, &sought).unwrap();
+    scan.retain(|p| p.x > 7.0);
+    let part = trial::measured(&scan, &sought).unwrap();
+    let [More::One { hump: Some(_), .. }, More::One { hump: None, crater: Some(crater), .. }] =
+        [whole[0].unwrap().more, part[0].unwrap().more]
+    else {
+        panic!("{whole:?} {part:?}")
+    };
+    assert!((crater.height - 1.0).abs() < 0.1 && (part[0].unwrap().height - 2.0).abs() < 0.1, "{part:?}");
+    let series = series(&["lead_in_power=1.2..2"], Shape::Ends, 1, 1);
+    let sheet = trial::csv("t", &series);
+    let once = trial::filled(&sheet, 1, &[whole[0], None, None]).unwrap();
+    let again = trial::filled(&once, 1, &[part[0], None, None]).unwrap();
+    assert_eq!(again, trial::filled(&sheet, 1, &[part[0], None, None]).unwrap());
 }
 
 /// Three beads whose valleys are filled up to a known depth.
@@ -504,7 +532,7 @@ fn valleys_between_beads_in_a_scan_are_as_deep_as_they_were_made() {
                 // What is seen goes into the sheet.
                 let series = series(&["stepover=0.6..0.9"], Shape::Overlap(3), 1, 1);
                 let sheet = trial::csv("t", &series);
-                assert_eq!(trial::trials_on(&sheet, 1).unwrap(), 3);
+                assert_eq!(trial::numbers_on(&sheet, 1).unwrap(), ["1", "2", "3"]);
                 let filled = trial::filled(&sheet, 1, &[found[0], None, None]).unwrap();
                 assert!(filled.contains(&format!(",{:.2},{:.2},{valley:.2},", size.width, size.height)), "{filled}");
             }
@@ -552,7 +580,7 @@ fn the_widest_stepover_with_shallow_valleys_is_found() {
 fn a_scan_fills_in_the_lines_of_its_plate_only() {
     let series = series(&["deposition_speed=6..10"], Shape::Bead, 2, 1);
     let sheet = trial::csv("trials", &series);
-    let level = Slope { height: 0.0, length: None };
+    let level = Some(Slope { height: 0.0, length: None });
     let more = More::One { width_varies: 0.1, height_varies: 0.1, hump: level, crater: level };
     let size = BeadSize { width: 6.123, height: 2.0, more };
     let filled = trial::filled(&sheet, 2, &[Some(size), None, Some(size)]).unwrap();

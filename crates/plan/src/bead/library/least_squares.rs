@@ -26,6 +26,12 @@ impl Factored {
         done
     }
 
+    /// The standard error of a coefficient (its number among the kept columns) where values scatter by 1.
+    pub(crate) fn error_of(&self, coefficient: usize) -> f64 {
+        let row: Vec<f64> = (0..self.kept.len()).map(|k| f64::from(u8::from(k == coefficient))).collect();
+        leverage(&self.triangle, &row).sqrt()
+    }
+
     fn take(&mut self, number: usize, column: &[f64]) {
         let mut rest = column.to_vec();
         self.reflect(&mut rest);
