@@ -118,14 +118,23 @@ pub fn over(
         None => (seen, shadow(&facing, &chart).area()),
     };
     warp::check_slope(&surface, places(&region, step / 2.0))?;
-    let polygons = region.simplified(TOLERANCE).into_polygons().into_iter();
-    let polygons: Vec<Polygon> = polygons.filter(|polygon| polygon.area() > step * step).collect();
+    let polygons = large(region.simplified(TOLERANCE).into_polygons(), step * step);
     if polygons.is_empty() {
         return Err(CladdingError::NoArea);
     }
     let covered: f64 = polygons.iter().map(Polygon::area).sum();
     let mesh = stacked(&polygons, &surface, thickness, task)?;
     Ok(Cladding { mesh, chart, bare: (all - covered).max(0.0) })
+}
+
+/// Polygons and holes larger than an area, mm². Smaller ones are roughness of a scan or gaps in it.
+fn large(polygons: Vec<Polygon>, area: f64) -> Vec<Polygon> {
+    let whole = polygons.into_iter().filter(|polygon| polygon.area() > area);
+    let filled = whole.map(|mut polygon| {
+        polygon.holes.retain(|hole| hole.area().abs() > area);
+        polygon
+    });
+    filled.collect()
 }
 
 /// The faces, of those looking up, that are visible and not too steep, on a grid of `step` (mm), restricted to `kept`.

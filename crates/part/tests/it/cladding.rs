@@ -118,3 +118,28 @@ fn steps_are_left_out_and_rough_surfaces_are_not() {
     let rough = over(&scan, DVec3::Z, 5.0, None, 2.0, &Task::new()).unwrap();
     assert!((rough.mesh.volume() / (160.0 * 100.0 * 2.0) - 1.0).abs() < 0.02, "{}", rough.mesh.volume());
 }
+
+/// A scan of 1 mm between its points, each 0.2 mm off: its slopes are those of the surface, and no face of it is bare.
+#[test]
+fn the_noise_of_a_scan_makes_no_slopes_and_no_holes() {
+    let height = |p: DVec2| (250.0 * 250.0 - p.length_squared()).sqrt() - 200.0;
+    let side = 101;
+    let place = |k: usize| DVec2::new((k % side) as f64, (k / side) as f64) - 50.0;
+    let uniform = |k: usize| ((k as f64 * 12.9898).sin() * 43758.5453).rem_euclid(1.0).max(1e-9);
+    // As far off as a normal distribution of 0.2 mm has it.
+    let noise = |k: usize| 0.2 * (-2.0 * uniform(k).ln()).sqrt() * (2.0 * PI * uniform(k + side * side)).cos();
+    let vertices = (0..side * side).map(|k| place(k).extend(height(place(k)) + noise(k))).collect();
+    let cell = |k: usize| [[k, k + 1, k + side + 1], [k, k + side + 1, k + side]].map(|t| t.map(|corner| corner as u32));
+    let cells = (0..side * (side - 1)).filter(|k| k % side + 1 < side);
+    let scan = Mesh { vertices, triangles: cells.flat_map(cell).collect(), ..Mesh::default() };
+    let cladding = over(&scan, DVec3::Z, 5.0, None, 2.0, &Task::new()).unwrap();
+    assert!((cladding.mesh.volume() / (100.0 * 100.0 * 2.0) - 1.0).abs() < 0.002, "{}", cladding.mesh.volume());
+    assert!(cladding.bare < 1.0, "{}", cladding.bare);
+    let Chart::Surface(surface) = &cladding.chart else { panic!("layers over the scan") };
+    let off = |k: usize| (cladding.chart.coordinates(place(k).extend(height(place(k)))).z).abs();
+    for k in 0..side*side { if off(k) > 0.15 { eprintln!("{} {}", place(k), off(k)); } }
+    let worst = (0..side * side).map(off).fold(0.0, f64::max);
+    assert!(worst < 0.25, "{worst} mm");
+    let steepest = (0..side * side).map(|k| surface.stretch(place(k))).fold(0.0, f64::max);
+    assert!(steepest < 1.055, "{steepest}");
+}
