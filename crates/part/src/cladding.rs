@@ -7,7 +7,7 @@ use crate::model::Mesh;
 use crate::model::solid::Solid;
 use crate::task::Task;
 use glam::{DQuat, DVec2, DVec3};
-use planar::{Bounds, FillRule, Join, Polygon, Region, Ring};
+use planar::{FillRule, Join, Polygon, Region, Ring};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -117,13 +117,14 @@ pub fn over(
         Some(area) => (seen.intersection(area), area.area()),
         None => (seen, shadow(&facing, &chart).area()),
     };
-    warp::check_slope(&surface, places(&region, step / 2.0))?;
     let polygons = large(region.simplified(TOLERANCE).into_polygons(), step * step);
     if polygons.is_empty() {
         return Err(CladdingError::NoArea);
     }
     let covered: f64 = polygons.iter().map(Polygon::area).sum();
     let mesh = stacked(&polygons, &surface, thickness, task)?;
+    // Where a plan looks at it.
+    warp::check_slope(&surface, mesh.vertices.iter().map(|p| surface.coordinates(*p)))?;
     Ok(Cladding { mesh, chart, bare: (all - covered).max(0.0) })
 }
 
@@ -164,15 +165,6 @@ fn stacked(polygons: &[Polygon], surface: &Surface, thickness: f64, task: &Task)
         triangles.extend(bent.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
     }
     Ok(Mesh::from_triangles(vertices, triangles).0)
-}
-
-/// Grid points within a region, mm.
-fn places(region: &Region, step: f64) -> impl Iterator<Item = DVec3> {
-    let bounds = region.bounds().unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
-    let counts = (bounds.size() / step).ceil();
-    let at = move |i: usize, j: usize| bounds.min + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * step;
-    let rows = (0..counts.y as usize).flat_map(move |j| (0..counts.x as usize).map(move |i| at(i, j)));
-    rows.filter(|p| region.contains(*p)).map(|p| p.extend(0.0))
 }
 
 fn normal([a, b, c]: &[DVec3; 3]) -> DVec3 {

@@ -154,7 +154,7 @@ impl Surface {
         Self { heights: lower(&self.heights), control: lower(&self.control), ..*self }
     }
 
-    pub(super) fn coordinates(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn coordinates(&self, p: DVec3) -> DVec3 {
         let seen = seen(self.up, p);
         seen.with_z(seen.z - self.at_place(seen.truncate()).0)
     }
@@ -291,20 +291,20 @@ impl Grid {
         tops
     }
 
-    /// The topmost heights of a mesh as [`Self::tops`] has them, but each that of the plane that fits the mesh best for half a
-    /// step around: the noise of a scan makes no slopes.
+    /// The topmost heights of a mesh as [`Self::tops`] has them, but each that of the plane that fits the mesh best within a
+    /// step, where near places count more: the noise of a scan makes no slopes.
     fn evened(&self, mesh: &Mesh) -> Vec<Option<f64>> {
-        const HALF: usize = FINE / 2;
+        const REACH: usize = FINE - 1;
         let step = self.step / FINE as f64;
-        let [columns, rows] = [self.columns, self.rows].map(|count| (count - 1) * FINE + 1 + 2 * HALF);
-        let fine = Self { from: self.from - HALF as f64 * step, step, columns, rows, ..*self };
+        let [columns, rows] = [self.columns, self.rows].map(|count| (count - 1) * FINE + 1 + 2 * REACH);
+        let fine = Self { from: self.from - REACH as f64 * step, step, columns, rows, ..*self };
         let tops = fine.tops(mesh);
         let evened = |k: usize| {
             let (column, row) = (k % self.columns * FINE, k / self.columns * FINE);
             let top = |i: usize, j: usize| tops[(row + j) * columns + column + i];
-            let own = top(HALF, HALF)?;
-            let place = |i: usize, j: usize| DVec2::new(i as f64, j as f64) - HALF as f64;
-            let near = (0..=FINE).flat_map(|j| (0..=FINE).map(move |i| (i, j)));
+            let own = top(REACH, REACH)?;
+            let place = |i: usize, j: usize| (DVec2::new(i as f64, j as f64) - REACH as f64) / FINE as f64;
+            let near = (0..=2 * REACH).flat_map(|j| (0..=2 * REACH).map(move |i| (i, j)));
             let near = near.filter_map(|(i, j)| Some((place(i, j), top(i, j)? - own)));
             // What lies beyond a step is another face.
             Some(own + in_middle(near.filter(|(_, by)| by.abs() <= self.step)))
@@ -348,19 +348,23 @@ impl Grid {
     }
 }
 
-/// Height at the origin of the plane that fits heights best, in the unit of the heights; 0 where they define no plane.
+/// Height at the origin of the plane that fits heights best, in their unit; 0 where they define no plane. Places lie within 1 of the origin
+/// in x and y, and count less the farther away they are.
 fn in_middle(heights: impl Iterator<Item = (DVec2, f64)>) -> f64 {
     let (mut squares, mut right) = (DMat3::ZERO, DVec3::ZERO);
     for (place, height) in heights {
+        let weight = (1.0 - place * place).element_product();
         let row = DVec3::new(1.0, place.x, place.y);
-        squares += DMat3::from_cols(row, row * place.x, row * place.y);
-        right += row * height;
+        squares += DMat3::from_cols(row, row * place.x, row * place.y) * weight;
+        right += row * height * weight;
     }
-    if squares.determinant() > 0.5 { (squares.inverse() * right).x } else { 0.0 }
+    if squares.determinant() > FLAT { (squares.inverse() * right).x } else { 0.0 }
 }
 
-/// Heights that are evened out are looked at in this many places per step; even.
+/// Heights that are evened out are measured at this many places per step.
 const FINE: usize = 4;
+/// Places whose determinant is smaller lie on one line.
+const FLAT: f64 = 1e-6;
 /// Points outside a triangle by less than this fraction count as on its edge.
 const EDGE: f64 = 1e-9;
 /// A triangle whose projection is smaller than this fraction of a grid square is seen edge-on: rounding would decide

@@ -443,7 +443,7 @@ fn examples_over_surfaces_keep_their_volume() {
         let seen = Chart::Surface(Arc::new(Surface::of_mesh(&mesh, DVec3::Z, 5.0).unwrap()));
         for p in [DVec2::ZERO, DVec2::new(30.0, -20.0), DVec2::new(-41.0, 22.0)] {
             let [top, under] = [&seen, &chart].map(|chart| chart.sheet(0.0).at(p.extend(0.0)).place.z);
-            assert!((top - under - thickness).abs() < 0.02, "{name}: {top} {under}");
+            assert!((top - under - thickness).abs() < 0.03, "{name}: {top} {under}");
         }
     }
     let cross = example::find("cross").unwrap().mesh();

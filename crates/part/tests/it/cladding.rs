@@ -142,5 +142,5 @@ fn the_noise_of_a_scan_makes_no_slopes_and_no_holes() {
     let far = (0..side * side).filter(|k| off(*k) > 0.15).count();
     assert!(far < side * side / 200, "{far} places");
     let steepest = (0..side * side).map(|k| surface.stretch(place(k))).fold(0.0, f64::max);
-    assert!(steepest < 1.055, "{steepest}");
+    assert!(steepest < 1.05, "{steepest}");
 }
