@@ -1,32 +1,36 @@
 #!/usr/bin/env python3
-"""Clads a pipe, a dome, a mould and a scan of the dome, repairs five damages of two parts, and prints two tables.
+"""Clads a pipe, a dome, a mould and a scan of the dome, repairs five damages of a block, and prints two tables.
 
-Dome and mould are examples of the program; the scan is the dome's surface in triangles of 1 mm with noise of --noise mm (standard
-deviation). Each base is clad as it is and turned by 37 degrees about a slanted axis, with zigzags along and across, spirals, and
-rings joined to one path (loop). Damages are cut out of a block and a shaft by the library manifold3d (`pip install manifold3d numpy`).
+Dome and mould are examples of the program; the scan is the dome's surface in triangles of at most 1 mm with noise of --noise mm
+(standard deviation). Each base is clad with three layers, as it is and turned by 37 degrees about a slanted axis, in closed rings (loop),
+zigzags and spirals (on the pipe a helix). Damages are cut out of a block by the library manifold3d; where they lie and how large they
+are depends on the seed (`pip install manifold3d numpy scipy`).
 
-What is clad is measured here, from the table of beads that `beadwright export` writes: at points of the true surface, the metal
-within a stepover of each layer. Columns: thickness as a share of the layers that were asked for, mean, lowest and highest 5 %, and
-the worst; how far layers lie from where the surface has them, mm; bare area, cm2 (farther from all beads of a layer than half their
-width and a tenth); stretch, what the plan says; arc starts; seconds to clad and to plan.
+What is clad is measured here, from the table of beads that `beadwright export` writes: at 1,000 places of the true surface, the metal
+within a stepover. Thickness is judged farther from the edge than a stepover and half a bead, where a layer is thin because beads
+are round. Columns: thickness of single layers as a share of the height asked for, mean, lowest and highest 5 % of places; the
+same of all layers together, and the share of places where those are off by more than a tenth of a layer; how far beads lie from
+where the surface has their layer, mm, worst of 95 %; bare in % of the surface, in the worst layer (farther from all beads than half their
+width and a tenth); stretch in %, what the plan says; arc starts; seconds to clad and to plan.
 
-Repairs: what was cut out and what the program finds missing, cm3; what is milled first; the deviation of the part's surface from the
-scan and of what is built from the part where it was damaged, mm.
+Repairs: what was cut out and what the program finds missing, cm3; what is milled first; how far the scan, and then what is built,
+lies from the part's surface, where it was damaged by more than 1 mm: lowest and highest, and the lowest and highest 5 % of places, mm; and
+the share of places that end below the part by more than 0.1 mm, and above the allowance (one layer).
 
-Usage: benches/surfaces.py [--only clad|repair] [--names dome,…] [--noise 0.2] [--output FOLDER] [--binary FILE]
+Usage: benches/surfaces.py [--only clad|repair] [--names dome,…] [--seeds 1,2] [--noise 0.1] [--allowance 2] [--output FOLDER] [--binary FILE]
 """
 import argparse, csv, json, pathlib, re, subprocess, sys, time
+import manifold3d
 import numpy as np
+from scipy.spatial import cKDTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import trees
 
 LAYERS, HEIGHT, STEPOVER, WIDTH = 3, 2.0, 5.39, 7.54
+SIZE = np.array([120.0, 80.0, 40.0])
 AXIS, ANGLE = np.array([1.0, 2.0, 0.5]), 37.0
-PATTERNS = {
-    "along": ["fill.strategy=zigzag", "fill.raster_angle=0", "fill.raster_turn=fixed"],
-    "across": ["fill.strategy=zigzag", "fill.raster_angle=90", "fill.raster_turn=fixed"],
-    "spiral": ["fill.strategy=spiral"], "loop": ["fill.strategy=loop"]}
+PATTERNS = ["loop", "zigzag", "spiral"]
 
 
 def run(*command):
@@ -89,16 +93,15 @@ def smooth(corners):
     return own.reshape(-1, 3, 3)
 
 
-def rough(corners, noise):
-    """A scan: every corner moved by noise."""
+def rough(corners, noise, seed):
+    """A scan: every corner moved by noise, but not those on the table."""
     _, at = np.unique(corners.reshape(-1, 3).round(4), axis=0, return_inverse=True)
-    by = np.random.default_rng(1).normal(0, noise, at.max() + 1)[at.ravel()].reshape(-1, 3, 1)
-    return corners + by * smooth(corners)
+    by = np.random.default_rng(seed).normal(0, noise, at.max() + 1)[at.ravel()].reshape(-1, 3, 1)
+    return corners + by * smooth(corners) * (corners[:, :, 2:] > 0.01)
 
 
-def bases(binary, out, noise):
-    """Name, triangles, which of them are clad, and the cylinder that is clad, if it is one."""
-    import manifold3d
+def bases(binary, out, noise, seeds):
+    """Name, triangles, which of them are clad, and the radius of the cylinder that is clad, if it is one."""
     pipe = manifold3d.Manifold.cylinder(160, 45, 45, 180) - manifold3d.Manifold.cylinder(160, 35, 35, 180)
     trees.write(pipe, out / "pipe.stl")
     for name in ("dome", "mould"):
@@ -109,24 +112,15 @@ def bases(binary, out, noise):
     yield "pipe", pipe, pipe[outer], 45.0
     yield "dome", dome, dome[upper], None
     yield "mould", mould, mould[units(mould)[:, 2] > 0.7], None
-    yield "scan", rough(fine(dome, 1.0), noise), dome[upper], None
-
-
-def distances(places, others):
-    """Distances of all others from every place, mm, some places at a time: from which place to which, and the distances."""
-    some = 1 + 1_000_000 // len(others)
-    for first in range(0, len(places), some):
-        own = places[first:first + some]
-        squares = (own**2).sum(1)[:, None] + (others**2).sum(1) - 2 * own @ others.T
-        yield slice(first, first + len(own)), np.sqrt(np.maximum(squares, 0))
+    for seed in seeds:
+        yield f"scan {seed}", rough(fine(dome, 1.0), noise, seed), dome[upper], None
 
 
 def smeared(places, others, weights):
     """What of some weights lies within a stepover of each place, nearer ones counting more."""
-    sums = np.empty(len(places))
-    for own, apart in distances(places, others):
-        sums[own] = np.maximum(1 - (apart / STEPOVER) ** 2, 0) @ weights
-    return sums
+    near = cKDTree(others).query_ball_point(places, STEPOVER)
+    apart = (np.linalg.norm(others[own] - place, axis=1) for own, place in zip(near, places))
+    return np.array([np.maximum(1 - (by / STEPOVER) ** 2, 0) @ weights[own] for own, by in zip(near, apart)])
 
 
 def border(corners):
@@ -168,27 +162,26 @@ class Beads:
 
 
 def judged(beads, truth, up, count=1000):
-    """`up` is the direction along which layers are stacked, None for the surface's normals. At places of each layer: thickness as a share of its height, and distance from where it should lie; and bare area, cm2."""
+    """At places of the surface: thickness of each layer as a share of its height, how far beads lie from where the layer should, mm; and
+    what is bare in the worst layer. `up` is the direction along which layers are stacked, None for the surface's normals."""
     truth = fine(truth, 2.5)
-    normals, edge, layers = smooth(truth), border(truth), []
-    whole = truth.mean(axis=1)
-    inner = np.concatenate([apart.min(axis=1) for _, apart in distances(whole, edge)]) > STEPOVER + WIDTH / 2
+    normals, middles = smooth(truth), truth.mean(axis=1)
+    random = np.random.default_rng(1)
+    inner = cKDTree(border(truth)).query(middles)[0] > STEPOVER + WIDTH / 2
+    weights = np.linalg.norm(vectors(truth), axis=1)
+    chosen = lambda wanted: random.choice(len(truth), count, p=wanted * weights / (wanted * weights).sum())
+    within, everywhere = chosen(inner), chosen(np.ones(len(truth)))
+    thickness, off, bare = [], [], []
     for number in range(1, LAYERS + 1):
         moved = truth + (normals if up is None else up) * (number - 0.5) * HEIGHT
-        middles, areas = moved.mean(axis=1), np.linalg.norm(vectors(moved), axis=1)
-        random = np.random.default_rng(number)
+        places, areas = moved.mean(axis=1), np.linalg.norm(vectors(moved), axis=1)
         centres, widths, spread, metal = beads.layer(number)
-        own = random.choice(np.flatnonzero(inner), count)
-        thickness = smeared(middles[own], spread, metal) / smeared(middles[own], middles, areas) / HEIGHT
-        own = random.choice(len(middles), count)
-        least, off = np.empty(count), np.empty(count)
-        for some, apart in distances(middles[own], centres):
-            nearest = apart.argmin(axis=1)
-            least[some] = (apart - 0.6 * widths).min(axis=1)
-            off[some] = ((centres[nearest] - middles[own[some]]) * normals.mean(axis=1)[own[some]]).sum(axis=1)
-        layers.append((thickness, off, (least > 0).mean() * areas.sum() / 100))
-    thickness, off = (np.concatenate([layer[k] for layer in layers]) for k in (0, 1))
-    return thickness, off, max(layer[2] for layer in layers)
+        thickness.append(smeared(places[within], spread, metal) / smeared(places[within], places, areas) / HEIGHT)
+        apart, nearest = cKDTree(centres).query(places[everywhere])
+        bare.append((apart > 0.6 * widths[nearest]).mean())
+        normal = normals[everywhere].mean(axis=1)
+        off.append(np.abs(((centres[nearest] - places[everywhere]) * normal).sum(axis=1)))
+    return np.array(thickness), np.array(off), max(bare)
 
 
 def clad(binary, out, name, base, truth, radius, angle, pattern):
@@ -201,17 +194,16 @@ def clad(binary, out, name, base, truth, radius, angle, pattern):
     write(folder / "base.stl", base)
     words = lambda vector: "/".join(f"{part:.12f}" for part in vector)
     where = ["--up", words(own[:, 2])]
-    settings = PATTERNS[pattern]
+    settings = ["--set", f'fill.strategy="{pattern}"']
     if radius:
         where = ["--around", f"axis={words(own[:, 2])},through={words([0, 0, -lowest])},radius={radius}"]
-        settings = ["fill.around=helix"] if pattern == "spiral" else settings
-    wanted = [word for setting in settings for word in ("--set", re.sub("=([a-z]+)$", r'="\1"', setting))]
+        settings = ["--set", 'fill.around="helix"'] if pattern == "spiral" else settings
     made, first = run(binary, "clad", folder / "base.stl", *where, "--layers", LAYERS, "-o", folder / "clad.stl")
     row = {"base": f"{name}, {angle:.0f}°", "pattern": pattern}
     if made.returncode:
         return row | {"why": " ".join(made.stderr.split())[:200]}
     done, second = run(binary, "plan", folder / "clad.stl", "--onto", folder / "base.stl", "--bodies", folder / "clad.bodies.toml",
-                       *wanted, "-o", folder / "plan")
+                       *settings, "-o", folder / "plan")
     if done.returncode:
         return row | {"why": " ".join(line for line in done.stderr.splitlines() if not line.startswith("note"))[:200]}
     metrics = json.loads((folder / "plan/metrics.json").read_text())
@@ -222,16 +214,106 @@ def clad(binary, out, name, base, truth, radius, angle, pattern):
     thickness, off, bare = judged(beads, truth, None if radius else own[:, 2])
     stretch = re.search(r"up to ([\d.]+) % farther", done.stdout + done.stderr)
     said = re.search(r"([\d.]+) cm² (is|of)", made.stdout)
-    share = lambda value: f"{100 * value:.1f}"
-    low, high = np.percentile(thickness, [5, 95])
-    return row | {"mean": share(thickness.mean()), "5 %": share(low), "95 %": share(high),
-                  "worst": f"{share(thickness.min())}…{share(thickness.max())}", "off": f"{np.nanmin(off):+.2f}…{np.nanmax(off):+.2f}",
-                  "bare": f"{bare:.1f}", "left out": said[1] if said else "0", "stretch": stretch[1] if stretch else "0",
-                  "starts": metrics["arc_starts"], "covered": share(metrics["coverage"]), "s": f"{first + second:.1f}"}
+    spread = lambda values: "{:.1f}, {:.1f}, {:.1f}".format(*(100 * value for value in (values.mean(), *np.percentile(values, [5, 95]))))
+    whole = thickness.mean(axis=0)
+    return row | {"each layer": spread(thickness), "all layers": spread(whole), "worst": f"{100 * whole.min():.0f}…{100 * whole.max():.0f}",
+                  "beyond": f"{100 * (np.abs(whole - 1) * LAYERS > 0.1).mean():.1f}", "off": f"{np.percentile(off, 95):.2f}",
+                  "bare": f"{100 * bare:.1f}", "left out": said[1] if said else "0", "stretch": stretch[1] if stretch else "0",
+                  "starts": metrics["arc_starts"], "s": f"{first + second:.1f}"}
+
+
+def box(low, high):
+    return manifold3d.Manifold.cube(np.subtract(high, low)).translate(low)
+
+
+def damages(random):
+    """Name, and what is cut out of the block."""
+    vary = lambda low, high: random.uniform(low, high)
+    x, y, z = SIZE
+    deep = vary(4, 6)
+    ball = manifold3d.Manifold.sphere(60, 200).translate([x / 2 + vary(-10, 10), y / 2 + vary(-8, 8), z + 60 - deep])
+    yield "pit", ball
+    half, depth = vary(8, 11), vary(6, 9)
+    section = manifold3d.CrossSection([[[-half, 0.0], [0.0, -depth], [half, 0.0], [half, 5.0], [-half, 5.0]]])
+    groove = manifold3d.Manifold.extrude(section, 70).rotate([90, 0, vary(20, 70)])
+    middle = groove.bounding_box()
+    yield "groove", groove.translate([x / 2 - (middle[0] + middle[3]) / 2, y / 2 - (middle[1] + middle[4]) / 2, z])
+    away = box([-100, -100, 0], [100, 100, 100])
+    yield "corner", away.rotate([-vary(40, 50), vary(35, 45), 0]).translate([x - vary(8, 12), y - vary(8, 12), z - 4])
+    yield "edge", away.rotate([0, vary(30, 45), 0]).translate([x - vary(6, 8), y / 2, z - 2])
+    radius, depth = vary(10, 14), 12.0
+    hole = manifold3d.Manifold.cylinder(depth + 1, radius, radius, 96).rotate([0, 90, 0])
+    yield "hole", hole.translate([x - depth, y / 2 + vary(-10, 10), z / 2 + vary(-3, 3)])
+
+
+def triangles(solid):
+    mesh = solid.to_mesh()
+    return np.array(mesh.vert_properties)[:, :3][np.array(mesh.tri_verts)].astype(float)
+
+
+def built(places, ways, beads, base):
+    """How far beads that are as high as their layers reach over places of the part along its normal, or how far places stay away from
+    metal (negative), mm."""
+    tree, heights = cKDTree(beads.places), np.full(len(places), -np.inf)
+    for k, (place, way) in enumerate(zip(places, ways)):
+        near = np.array(tree.query_ball_point(place, 25.0), int)
+        by, normals = beads.places[near] - place, beads.normals[near]
+        over = (by * normals).sum(axis=1)
+        within = np.linalg.norm(by - over[:, None] * normals, axis=1) <= beads.widths[near] / 2
+        heights[k] = np.max((over * (normals @ way))[within], initial=-np.inf)
+    metal = np.concatenate([base, beads.places])
+    return np.where(heights > 0, heights, np.maximum(heights, -cKDTree(metal).query(places)[0]))
+
+
+def mouth(part, damaged, removed, count=600):
+    """Places of the part's surface that are missing by more than 1 mm, and normals there."""
+    gone = fine(triangles(removed), 1.5)
+    deep, _ = cKDTree(fine(triangles(damaged), 1.5).reshape(-1, 3)).query(gone.mean(axis=1))
+    on_part, _ = cKDTree(fine(triangles(part), 1.0).reshape(-1, 3)).query(gone.mean(axis=1))
+    faces = gone[(deep > 1.0) & (on_part < 0.7)]
+    normals = units(faces)
+    # Faces of the damage itself that come near the part's surface face another way than the block's.
+    faces = faces[np.abs(normals).max(axis=1) > 0.99]
+    weights = np.linalg.norm(vectors(faces), axis=1)
+    own = np.random.default_rng(1).choice(len(faces), count, p=weights / weights.sum())
+    return faces.mean(axis=1)[own], units(faces)[own]
+
+
+def repair(binary, out, name, seed, cut, noise, allowance):
+    part = box([0, 0, 0], SIZE)
+    damaged, removed = part - cut, part ^ cut
+    angle = 0.0 if seed == 1 else ANGLE
+    folder = out / f"repair {name} {seed} {allowance:g}"
+    folder.mkdir(parents=True, exist_ok=True)
+    cosine, sine = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    turned = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]).T
+    scan = rough(fine(triangles(damaged) @ turned, 1.5), noise, seed)
+    write(folder / "part.stl", triangles(part) @ turned)
+    write(folder / "scan.stl", scan)
+    row = {"damage": f"{name}, seed {seed}", "cut out": f"{removed.volume() / 1e3:.2f}"}
+    made, first = run(binary, "repair", folder / "part.stl", folder / "scan.stl", "--units", "mm",
+                      "--allowance", allowance, "-o", folder / "repair.stl")
+    (folder / "repair.txt").write_text(made.stdout + made.stderr)
+    if made.returncode or not (folder / "repair.stl").exists():
+        return row | {"why": " ".join((made.stderr + made.stdout).split())[:200]}
+    found = re.findall(r"([\d.]+) cm³", made.stdout)
+    done, second = run(binary, "plan", folder / "repair.stl", "--units", "mm", "--onto", folder / "repair.base.stl",
+                       "--bodies", folder / "repair.bodies.toml", "-o", folder / "plan")
+    if done.returncode:
+        return row | {"why": " ".join(line for line in done.stderr.splitlines() if not line.startswith("note"))[:200]}
+    exported, _ = run(binary, "export", folder / "plan/plan.json", "-o", folder / "beads.csv")
+    assert not exported.returncode, exported.stderr
+    beads = Beads(folder / "beads.csv", json.loads((folder / "plan/metrics.json").read_text())["deposited_volume_mm3"], 0)
+    places, ways = (own @ turned for own in mouth(part, damaged, removed))
+    faces = [fine(mesh, 0.7).reshape(-1, 3) for mesh in (scan, read(folder / "repair.base.stl"))]
+    before, after = -cKDTree(faces[0]).query(places)[0], built(places, ways, beads, faces[1])
+    spread = lambda own: "{:+.2f}, {:+.2f}, {:+.2f}, {:+.2f}".format(*np.nanpercentile(own, [0, 5, 95, 100]))
+    return row | {"found": " / ".join(found), "before": spread(before), "after": spread(after), "low": f"{100 * (~(after >= -0.1)).mean():.1f}",
+                  "high": f"{100 * (after > allowance + 0.1).mean():.1f}", "s": f"{first + second:.1f}"}
 
 
 def table(columns, rows):
-    print("| " + " | ".join(columns) + " |\n|" + " --- |" * len(columns))
+    print("\n| " + " | ".join(columns) + " |\n|" + " --- |" * len(columns))
     for row in rows:
         print("| " + " | ".join(str(row.get(column, "")) for column in columns) + " |", flush=True)
 
@@ -242,18 +324,26 @@ def main():
     parser.add_argument("--names", default="")
     parser.add_argument("--patterns", default=",".join(PATTERNS))
     parser.add_argument("--turns", default=f"0,{ANGLE:.0f}")
-    parser.add_argument("--noise", type=float, default=0.2)
+    parser.add_argument("--seeds", default="1,2")
+    parser.add_argument("--noise", type=float, default=0.1)
+    parser.add_argument("--scanned", type=float, default=0.05, help="noise of the scans of damaged blocks, mm")
+    parser.add_argument("--allowance", type=float, default=HEIGHT, help="metal above the repaired block, at most, mm")
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("surfaces"))
     parser.add_argument("--binary", type=pathlib.Path, default=trees.ROOT / "target/release/beadwright")
     given = parser.parse_args()
     given.output.mkdir(parents=True, exist_ok=True)
     binary, out = given.binary.resolve(), given.output
-    is_wanted = lambda name: not given.names or name in given.names.split(",")
+    is_wanted = lambda name: not given.names or name.split()[0] in given.names.split(",")
+    seeds = [int(seed) for seed in given.seeds.split(",")]
     if given.only != "repair":
         rows = (clad(binary, out, name, base, truth, radius, float(angle), pattern)
-                for name, base, truth, radius in bases(binary, out, given.noise) if is_wanted(name)
+                for name, base, truth, radius in bases(binary, out, given.noise, seeds) if is_wanted(name)
                 for angle in given.turns.split(",") for pattern in given.patterns.split(","))
-        table(["base", "pattern", "mean", "5 %", "95 %", "worst", "off", "bare", "left out", "stretch", "starts", "covered", "s", "why"], rows)
+        table(["base", "pattern", "each layer", "all layers", "worst", "beyond", "off", "bare", "left out", "stretch", "starts", "s", "why"], rows)
+    if given.only != "clad":
+        rows = (repair(binary, out, name, seed, cut, given.scanned, given.allowance)
+                for seed in seeds for name, cut in damages(np.random.default_rng(seed)) if is_wanted(name))
+        table(["damage", "cut out", "found", "before", "after", "low", "high", "s", "why"], rows)
 
 
 if __name__ == "__main__":

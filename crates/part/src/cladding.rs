@@ -4,10 +4,12 @@
 use crate::chart::warp::{self, STEEPEST, WarpError};
 use crate::chart::{Chart, Cylinder, Side, Surface, SurfaceError};
 use crate::model::Mesh;
+use crate::model::connected::joined;
 use crate::model::solid::Solid;
 use crate::task::Task;
 use glam::{DQuat, DVec2, DVec3};
 use planar::{FillRule, Join, Polygon, Region, Ring};
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -107,7 +109,7 @@ pub fn over(
     let near = area.map(|area| area.offset(BESIDE * step, Join::ROUND));
     let kept = |p: DVec2| near.as_ref().is_none_or(|near| near.contains(p));
     let facing = base.only(|corners| normal(corners).dot(up) >= FACING);
-    let facing = warp::divided(&facing, PIECE * step, task)?;
+    let facing = warp::divided(&without_small(facing, step * step), PIECE * step, task)?;
     let level = level(&facing, up, step, kept)?;
     // So that what falls away beside those faces does not pull their edges down.
     let surface = Arc::new(Surface::of_faces(&level, up, step, kept)?.rounded());
@@ -126,6 +128,19 @@ pub fn over(
     // Where a plan looks at it.
     warp::check_slope(&surface, mesh.vertices.iter().map(|p| surface.coordinates(*p)))?;
     Ok(Cladding { mesh, chart, bare: (all - covered).max(0.0) })
+}
+
+/// A mesh without what is joined to less than an area, mm²: faces of a scan's walls that roughness turns upwards.
+fn without_small(mut mesh: Mesh, area: f64) -> Mesh {
+    let patches = joined(&mesh.triangles, mesh.vertices.len());
+    let mut areas: BTreeMap<u32, f64> = BTreeMap::new();
+    for (corners, patch) in mesh.triangles.iter().zip(&patches) {
+        let [a, b, c] = corners.map(|corner| mesh.vertices[corner as usize]);
+        *areas.entry(*patch).or_default() += 0.5 * (b - a).cross(c - a).length();
+    }
+    let mut patches = patches.iter();
+    mesh.triangles.retain(|_| patches.next().is_some_and(|patch| areas.get(patch).is_some_and(|own| *own > area)));
+    mesh
 }
 
 /// Polygons and holes larger than an area, mm². Smaller ones are roughness of a scan or gaps in it.

@@ -302,10 +302,14 @@ impl Grid {
         let evened = |k: usize| {
             let (column, row) = (k % self.columns * FINE, k / self.columns * FINE);
             let top = |i: usize, j: usize| tops[(row + j) * columns + column + i];
-            let own = top(REACH, REACH)?;
             let place = |i: usize, j: usize| (DVec2::new(i as f64, j as f64) - REACH as f64) / FINE as f64;
             let near = (0..=2 * REACH).flat_map(|j| (0..=2 * REACH).map(move |i| (i, j)));
-            let near = near.filter_map(|(i, j)| Some((place(i, j), top(i, j)? - own)));
+            let near: Vec<(DVec2, f64)> = near.filter_map(|(i, j)| Some((place(i, j), top(i, j)?))).collect();
+            // A gap in a scan is no edge.
+            let is_within = 2 * near.len() > (2 * REACH + 1).pow(2);
+            let mean = || near.iter().map(|(_, height)| height).sum::<f64>() / near.len() as f64;
+            let own = top(REACH, REACH).or_else(|| is_within.then(mean))?;
+            let near = near.iter().map(|(place, height)| (*place, height - own));
             // What lies beyond a step is another face.
             Some(own + in_middle(near.filter(|(_, by)| by.abs() <= self.step)))
         };

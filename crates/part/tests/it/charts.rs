@@ -449,6 +449,9 @@ fn examples_over_surfaces_keep_their_volume() {
     let cross = example::find("cross").unwrap().mesh();
     let steep = Chart::Surface(Arc::new(saddle(DVec3::Z, 10.0, 9, |p| 0.5 * p.x - 100.0)));
     assert!(warp::warped(&steep, &cross, 0.02, &Task::new()).unwrap_err().to_string().contains("17.7°"));
+    // What is only lain on may be as steep as it likes.
+    let unrolled = warp::unrolled(&steep, &cross, 0.02, &Task::new()).unwrap();
+    assert!((unrolled.volume() / cross.volume() - 1.0).abs() < 1e-6, "{}", unrolled.volume());
 }
 
 #[test]
