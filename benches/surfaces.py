@@ -7,15 +7,15 @@ zigzags and spirals (on the pipe a helix). Damages are cut out of a block by the
 are depends on the seed (`pip install manifold3d numpy scipy`).
 
 What is clad is measured here, from the table of beads that `beadwright export` writes: at 1,000 places of the true surface, the metal
-within a stepover. Thickness is judged farther from the edge than a stepover and half a bead, where a layer is thin because beads
-are round. Columns: thickness of single layers as a share of the height asked for, mean, lowest and highest 5 % of places; the
+within one and a half stepovers, so that ridges and valleys of beads even out, and farther from the edge than that and half a bead, since
+beads are round there. Columns: thickness of single layers as a share of the height asked for, mean, lowest and highest 5 % of places; the
 same of all layers together, and the share of places where those are off by more than a tenth of a layer; how far beads lie from
 where the surface has their layer, mm, worst of 95 %; bare in % of the surface, in the worst layer (farther from all beads than half their
 width and a tenth); stretch in %, what the plan says; arc starts; seconds to clad and to plan.
 
 Repairs: what was cut out and what the program finds missing, cm3; what is milled first; how far the scan, and then what is built,
-lies from the part's surface, where it was damaged by more than 1 mm: lowest and highest, and the lowest and highest 5 % of places, mm; and
-the share of places that end below the part by more than 0.1 mm, and above the allowance (one layer).
+lies from the part's surface, where it was damaged by more than 1 mm: lowest, lowest and highest 5 % of places, highest, mm (beads count as
+high as their layers); and the share of places that end below the part by more than 0.1 mm, and above the allowance (one layer).
 
 Usage: benches/surfaces.py [--only clad|repair] [--names dome,…] [--seeds 1,2] [--noise 0.1] [--allowance 2] [--output FOLDER] [--binary FILE]
 """
@@ -28,6 +28,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import trees
 
 LAYERS, HEIGHT, STEPOVER, WIDTH = 3, 2.0, 5.39, 7.54
+REACH = 1.5 * STEPOVER
 SIZE = np.array([120.0, 80.0, 40.0])
 AXIS, ANGLE = np.array([1.0, 2.0, 0.5]), 37.0
 PATTERNS = ["loop", "zigzag", "spiral"]
@@ -117,10 +118,10 @@ def bases(binary, out, noise, seeds):
 
 
 def smeared(places, others, weights):
-    """What of some weights lies within a stepover of each place, nearer ones counting more."""
-    near = cKDTree(others).query_ball_point(places, STEPOVER)
+    """What of some weights lies within reach of each place, nearer ones counting more."""
+    near = cKDTree(others).query_ball_point(places, REACH)
     apart = (np.linalg.norm(others[own] - place, axis=1) for own, place in zip(near, places))
-    return np.array([np.maximum(1 - (by / STEPOVER) ** 2, 0) @ weights[own] for own, by in zip(near, apart)])
+    return np.array([np.maximum(1 - (by / REACH) ** 2, 0) @ weights[own] for own, by in zip(near, apart)])
 
 
 def border(corners):
@@ -167,7 +168,7 @@ def judged(beads, truth, up, count=1000):
     truth = fine(truth, 2.5)
     normals, middles = smooth(truth), truth.mean(axis=1)
     random = np.random.default_rng(1)
-    inner = cKDTree(border(truth)).query(middles)[0] > STEPOVER + WIDTH / 2
+    inner = cKDTree(border(truth)).query(middles)[0] > REACH + WIDTH / 2
     weights = np.linalg.norm(vectors(truth), axis=1)
     chosen = lambda wanted: random.choice(len(truth), count, p=wanted * weights / (wanted * weights).sum())
     within, everywhere = chosen(inner), chosen(np.ones(len(truth)))
