@@ -4,10 +4,12 @@
 use crate::chart::warp::{self, STEEPEST, WarpError};
 use crate::chart::{Chart, Cylinder, Side, Surface, SurfaceError};
 use crate::model::Mesh;
+use crate::model::connected::joined;
 use crate::model::solid::Solid;
 use crate::task::Task;
 use glam::{DQuat, DVec2, DVec3};
-use planar::{Bounds, FillRule, Join, Polygon, Region, Ring};
+use planar::{FillRule, Join, Polygon, Region, Ring};
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -107,7 +109,7 @@ pub fn over(
     let near = area.map(|area| area.offset(BESIDE * step, Join::ROUND));
     let kept = |p: DVec2| near.as_ref().is_none_or(|near| near.contains(p));
     let facing = base.only(|corners| normal(corners).dot(up) >= FACING);
-    let facing = warp::divided(&facing, PIECE * step, task)?;
+    let facing = warp::divided(&without_small(facing, step * step), PIECE * step, task)?;
     let level = level(&facing, up, step, kept)?;
     // So that what falls away beside those faces does not pull their edges down.
     let surface = Arc::new(Surface::of_faces(&level, up, step, kept)?.rounded());
@@ -117,15 +119,38 @@ pub fn over(
         Some(area) => (seen.intersection(area), area.area()),
         None => (seen, shadow(&facing, &chart).area()),
     };
-    warp::check_slope(&surface, places(&region, step / 2.0))?;
-    let polygons = region.simplified(TOLERANCE).into_polygons().into_iter();
-    let polygons: Vec<Polygon> = polygons.filter(|polygon| polygon.area() > step * step).collect();
+    let polygons = large(region.simplified(TOLERANCE).into_polygons(), step * step);
     if polygons.is_empty() {
         return Err(CladdingError::NoArea);
     }
     let covered: f64 = polygons.iter().map(Polygon::area).sum();
     let mesh = stacked(&polygons, &surface, thickness, task)?;
+    // Where a plan looks at it.
+    warp::check_slope(&surface, mesh.vertices.iter().map(|p| surface.coordinates(*p)))?;
     Ok(Cladding { mesh, chart, bare: (all - covered).max(0.0) })
+}
+
+/// A mesh without what is joined to less than an area, mm²: faces of a scan's walls that roughness turns upwards.
+fn without_small(mut mesh: Mesh, area: f64) -> Mesh {
+    let patches = joined(&mesh.triangles, mesh.vertices.len());
+    let mut areas: BTreeMap<u32, f64> = BTreeMap::new();
+    for (corners, patch) in mesh.triangles.iter().zip(&patches) {
+        let [a, b, c] = corners.map(|corner| mesh.vertices[corner as usize]);
+        *areas.entry(*patch).or_default() += 0.5 * (b - a).cross(c - a).length();
+    }
+    let mut patches = patches.iter();
+    mesh.triangles.retain(|_| patches.next().is_some_and(|patch| areas.get(patch).is_some_and(|own| *own > area)));
+    mesh
+}
+
+/// Polygons and holes larger than an area, mm². Smaller ones are roughness of a scan or gaps in it.
+fn large(polygons: Vec<Polygon>, area: f64) -> Vec<Polygon> {
+    let whole = polygons.into_iter().filter(|polygon| polygon.area() > area);
+    let filled = whole.map(|mut polygon| {
+        polygon.holes.retain(|hole| hole.area().abs() > area);
+        polygon
+    });
+    filled.collect()
 }
 
 /// The faces, of those looking up, that are visible and not too steep, on a grid of `step` (mm), restricted to `kept`.
@@ -155,15 +180,6 @@ fn stacked(polygons: &[Polygon], surface: &Surface, thickness: f64, task: &Task)
         triangles.extend(bent.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
     }
     Ok(Mesh::from_triangles(vertices, triangles).0)
-}
-
-/// Grid points within a region, mm.
-fn places(region: &Region, step: f64) -> impl Iterator<Item = DVec3> {
-    let bounds = region.bounds().unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
-    let counts = (bounds.size() / step).ceil();
-    let at = move |i: usize, j: usize| bounds.min + DVec2::new(i as f64 + 0.5, j as f64 + 0.5) * step;
-    let rows = (0..counts.y as usize).flat_map(move |j| (0..counts.x as usize).map(move |i| at(i, j)));
-    rows.filter(|p| region.contains(*p)).map(|p| p.extend(0.0))
 }
 
 fn normal([a, b, c]: &[DVec3; 3]) -> DVec3 {

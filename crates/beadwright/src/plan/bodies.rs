@@ -279,7 +279,7 @@ const WEDGED: f64 = 0.55;
 fn under_layers<E>(mesh: &Mesh, slabs: &[Slab], profile: &Profile, task: &Task) -> Result<Vec<Under>, PlanError<E>> {
     let (chart, usual) = (&profile.layers.chart, profile.layers.height);
     let lowered = chart.lowered(usual);
-    let mesh = warp::warped(&lowered, mesh, charted::TOLERANCE, task)?;
+    let mesh = warp::unrolled(&lowered, mesh, charted::TOLERANCE, task)?;
     let gap = |k: usize, slab: &Slab| if k == 0 { GAP * usual } else { WEDGED * slab.height };
     let cuts: Vec<(f64, f64)> =
         slabs.iter().enumerate().map(|(k, slab)| (slab.z - slab.height, gap(k, slab))).collect();

@@ -7,7 +7,7 @@
 
 use super::At;
 use crate::model::Mesh;
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
 /// A surface that layers follow.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,8 +78,8 @@ impl Surface {
         Ok(Self { up, from, step, columns, heights, control })
     }
 
-    /// The topmost surface of a mesh seen along `up`, on a grid of `step` (mm). Beside the mesh and over its openings
-    /// the surface continues straight for a few steps, then level.
+    /// The topmost surface of a mesh seen along `up`, on a grid of `step` (mm), with roughness finer than the grid evened
+    /// out. Beside the mesh and over its openings the surface continues straight for a few steps, then level.
     ///
     /// # Errors
     /// [`SurfaceError`].
@@ -102,7 +102,7 @@ impl Surface {
         let low = mesh.vertices.iter().map(seen).fold(DVec2::INFINITY, corner);
         let high = -mesh.vertices.iter().map(|p| -seen(p)).fold(DVec2::INFINITY, corner);
         let grid = Grid::over(up, step, low, high)?;
-        let tops = grid.tops(mesh).into_iter().enumerate();
+        let tops = grid.evened(mesh).into_iter().enumerate();
         grid.surface(tops.map(|(k, top)| top.filter(|_| kept(grid.place(k)))).collect())
     }
 
@@ -154,7 +154,7 @@ impl Surface {
         Self { heights: lower(&self.heights), control: lower(&self.control), ..*self }
     }
 
-    pub(super) fn coordinates(&self, p: DVec3) -> DVec3 {
+    pub(crate) fn coordinates(&self, p: DVec3) -> DVec3 {
         let seen = seen(self.up, p);
         seen.with_z(seen.z - self.at_place(seen.truncate()).0)
     }
@@ -291,6 +291,31 @@ impl Grid {
         tops
     }
 
+    /// The topmost heights of a mesh as [`Self::tops`] has them, but each that of the plane that fits the mesh best within a
+    /// step, where near places count more: the noise of a scan makes no slopes.
+    fn evened(&self, mesh: &Mesh) -> Vec<Option<f64>> {
+        const REACH: usize = FINE - 1;
+        let step = self.step / FINE as f64;
+        let [columns, rows] = [self.columns, self.rows].map(|count| (count - 1) * FINE + 1 + 2 * REACH);
+        let fine = Self { from: self.from - REACH as f64 * step, step, columns, rows, ..*self };
+        let tops = fine.tops(mesh);
+        let evened = |k: usize| {
+            let (column, row) = (k % self.columns * FINE, k / self.columns * FINE);
+            let top = |i: usize, j: usize| tops[(row + j) * columns + column + i];
+            let place = |i: usize, j: usize| (DVec2::new(i as f64, j as f64) - REACH as f64) / FINE as f64;
+            let near = (0..=2 * REACH).flat_map(|j| (0..=2 * REACH).map(move |i| (i, j)));
+            let near: Vec<(DVec2, f64)> = near.filter_map(|(i, j)| Some((place(i, j), top(i, j)?))).collect();
+            // A gap in a scan is no edge.
+            let is_within = 2 * near.len() > (2 * REACH + 1).pow(2);
+            let mean = || near.iter().map(|(_, height)| height).sum::<f64>() / near.len() as f64;
+            let own = top(REACH, REACH).or_else(|| is_within.then(mean))?;
+            let near = near.iter().map(|(place, height)| (*place, height - own));
+            // What lies beyond a step is another face.
+            Some(own + in_middle(near.filter(|(_, by)| by.abs() <= self.step)))
+        };
+        (0..self.columns * self.rows).map(evened).collect()
+    }
+
     /// The surface through heights; where there are none, it goes on straight for a few steps, then level.
     ///
     /// # Errors
@@ -327,6 +352,23 @@ impl Grid {
     }
 }
 
+/// Height at the origin of the plane that fits heights best, in their unit; 0 where they define no plane. Places lie within 1 of the origin
+/// in x and y, and count less the farther away they are.
+fn in_middle(heights: impl Iterator<Item = (DVec2, f64)>) -> f64 {
+    let (mut squares, mut right) = (DMat3::ZERO, DVec3::ZERO);
+    for (place, height) in heights {
+        let weight = (1.0 - place * place).element_product();
+        let row = DVec3::new(1.0, place.x, place.y);
+        squares += DMat3::from_cols(row, row * place.x, row * place.y) * weight;
+        right += row * height * weight;
+    }
+    if squares.determinant() > FLAT { (squares.inverse() * right).x } else { 0.0 }
+}
+
+/// Heights that are evened out are measured at this many places per step.
+const FINE: usize = 4;
+/// Places whose determinant is smaller lie on one line.
+const FLAT: f64 = 1e-6;
 /// Points outside a triangle by less than this fraction count as on its edge.
 const EDGE: f64 = 1e-9;
 /// A triangle whose projection is smaller than this fraction of a grid square is seen edge-on: rounding would decide

@@ -30,6 +30,18 @@ use std::f64::consts::{PI, TAU};
 /// # Errors
 /// [`WarpError`].
 pub fn warped(chart: &Chart, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
+    let unrolled = unrolled(chart, mesh, tolerance, task)?;
+    if let Lie::Over(surface) = chart.lie() {
+        check_slope(surface, unrolled.vertices.iter().copied())?;
+    }
+    Ok(unrolled)
+}
+
+/// The same for metal that is not welded but lies under what is: however steep a surface is there.
+///
+/// # Errors
+/// [`WarpError`], but not [`WarpError::Steep`].
+pub fn unrolled(chart: &Chart, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<Mesh, WarpError> {
     match chart.lie() {
         Lie::Flat(plane) => Ok(mapped(mesh.clone(), |p| plane.coordinates(p))),
         Lie::Along(guide) => along(guide, mesh, tolerance, task),
@@ -142,9 +154,7 @@ fn over(surface: &Surface, mesh: &Mesh, tolerance: f64, task: &Task) -> Result<M
     };
     let divided = Divided::of(mesh, cut, task)?;
     let whole = Mesh::from_triangles(divided.vertices, divided.triangles).0;
-    let unrolled = mapped(whole, |p| surface.coordinates(p));
-    check_slope(surface, unrolled.vertices.iter().copied())?;
-    Ok(unrolled)
+    Ok(mapped(whole, |p| surface.coordinates(p)))
 }
 
 /// Edges shorter than this fraction of a surface's grid count as straight over it.

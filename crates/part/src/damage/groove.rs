@@ -195,6 +195,10 @@ impl Groove {
             let places = flat.vertices.iter().map(|p| self.floor.at(*p).place).collect();
             metal.add(Mesh::from_triangles(places, flat.triangles).0);
         }
+        if self.shape == Shape::Followed {
+            // Between the corners of a rough floor a plan finds steeper places.
+            warp::warped(&Chart::Surface(Arc::clone(&self.floor)), &metal, TOLERANCE, task)?;
+        }
         Ok(metal)
     }
 

@@ -6,10 +6,13 @@
 //! | `hub`, `shaft` | one part each that is welded in layers around its axis |
 //! | `elbow` | a part that is welded in layers square to its middle line |
 //! | `dome`, `clad` | one part each that is welded in layers over a surface |
+//! | `mould` | a part to be clad |
 //! | `y_tube` | a part that is welded as several bodies |
 //! | [`blade`], `gourd`, `pot`, `tian`, `wall` | one thin-walled part each (Li et al.) |
 //! | `outline` | points on circles and arcs |
+//! | `between` | what lies between two surfaces |
 
+mod between;
 pub mod blade;
 mod bracket;
 mod clad;
@@ -19,6 +22,7 @@ mod elbow;
 mod gear;
 mod gourd;
 mod hub;
+mod mould;
 mod outline;
 mod plate;
 mod pot;
@@ -123,6 +127,14 @@ pub const ALL: &[Example] = &[
         build: hub::build,
         curves: None,
         chart: Some("cylinder:axis=z,radius=40"),
+        bodies: None,
+    },
+    Example {
+        name: "mould",
+        about: "block with a shallow hollow in its top, such as a mould's, to be clad, 160 × 120 × 34 mm",
+        build: mould::build,
+        curves: None,
+        chart: None,
         bodies: None,
     },
     Example {

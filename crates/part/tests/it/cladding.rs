@@ -118,3 +118,40 @@ fn steps_are_left_out_and_rough_surfaces_are_not() {
     let rough = over(&scan, DVec3::Z, 5.0, None, 2.0, &Task::new()).unwrap();
     assert!((rough.mesh.volume() / (160.0 * 100.0 * 2.0) - 1.0).abs() < 0.02, "{}", rough.mesh.volume());
 }
+
+/// A scan of 1 mm between its points, each 0.2 mm off, with a wall below one edge: its slopes are those of the surface, and no face of
+/// it is bare.
+#[test]
+fn the_noise_of_a_scan_makes_no_slopes_and_no_holes() {
+    let height = |p: DVec2| (250.0 * 250.0 - p.length_squared()).sqrt() - 200.0;
+    let side = 101;
+    let place = |k: usize| DVec2::new((k % side) as f64, (k / side) as f64) - 50.0;
+    let uniform = |k: usize| ((k as f64 * 12.9898).sin() * 43758.5453).rem_euclid(1.0).max(1e-9);
+    // As far off as a normal distribution of 0.2 mm has it.
+    let noise = |k: usize| 0.2 * (-2.0 * uniform(k).ln()).sqrt() * (2.0 * PI * uniform(k + side * side)).cos();
+    let vertices = (0..side * side).map(|k| place(k).extend(height(place(k)) + noise(k))).collect();
+    let mut scan = grid(vertices, side);
+    let wall = |k: usize| {
+        let edge = DVec2::new(50.0, place(k).x);
+        edge.extend(height(edge) - 0.4 * (k / side) as f64) + DVec3::X * noise(k + side)
+    };
+    // Its points lie so close together that noise turns some of its faces upwards.
+    scan.add(grid((0..side * 30).map(wall).collect(), side));
+    let cladding = over(&scan, DVec3::Z, 5.0, None, 2.0, &Task::new()).unwrap();
+    assert!((cladding.mesh.volume() / (100.0 * 100.0 * 2.0) - 1.0).abs() < 0.005, "{}", cladding.mesh.volume());
+    assert!(cladding.bare < 1.0, "{}", cladding.bare);
+    let Chart::Surface(surface) = &cladding.chart else { panic!("layers over the scan") };
+    let off = |k: usize| (cladding.chart.coordinates(place(k).extend(height(place(k)))).z).abs();
+    // Only at corners are there too few points around.
+    let far = (0..side * side).filter(|k| off(*k) > 0.15).count();
+    assert!(far < side * side / 200, "{far} places");
+    let steepest = (0..side * side).map(|k| surface.stretch(place(k))).fold(0.0, f64::max);
+    assert!(steepest < 1.05, "{steepest}");
+}
+
+/// Faces between points in rows of a length.
+fn grid(vertices: Vec<DVec3>, row: usize) -> Mesh {
+    let cell = |k: usize| [[k, k + 1, k + row + 1], [k, k + row + 1, k + row]].map(|t| t.map(|corner| corner as u32));
+    let cells = (0..vertices.len() - row).filter(|k| k % row + 1 < row);
+    Mesh { triangles: cells.flat_map(cell).collect(), vertices, ..Mesh::default() }
+}
