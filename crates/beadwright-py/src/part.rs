@@ -4,9 +4,11 @@ use crate::array::{Array, Item, Numbers};
 use crate::error::{Refuse, raise};
 use crate::profile::Profile;
 use crate::running::Running;
+use beadwright::directions::{Division, Settings, divisions};
 use beadwright::model::{self, Import, Model, Placement, Units, units};
 use beadwright::plan::stock::Stocked;
 use beadwright::preform::{faces, figures::Figures};
+use beadwright::profile::Body;
 use beadwright::{Mesh, example, model::PartError};
 use glam::DVec3;
 use pyo3::buffer::PyBuffer;
@@ -182,6 +184,30 @@ impl Part {
         let made = |task: &_| Stocked::of(part, &profile.profile, task);
         let Stocked { part, figures, .. } = Running::new(None, None).run(py, Some(&self.name), made)?;
         Ok(Self { name: self.name.clone(), part: Arc::new(part), guessed: None, figures: Some(figures) })
+    }
+
+    /// Ways to divide a solid into bodies, the best first, and at last the whole of it in level layers.
+    fn directions<'py>(
+        &self,
+        py: Python<'py>,
+        profile: &Profile,
+        lean: f64,
+        tilt: f64,
+    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let bead = profile.profile.bead.width;
+        self.fits(bead).refuse(Some(&self.name))?;
+        let (mesh, settings) = (self.solid()?, Settings { lean, tilt, bead });
+        let found = Running::new(None, None).run(py, Some(&self.name), |task| divisions(mesh, settings, task))?;
+        let as_values = |division: &Division| {
+            let value = serde_json::json!({
+                "bodies": Body::of_division(&self.name, division),
+                "overhang": division.hanging,
+                "tilt": division.tilt,
+                "lean": division.lean,
+            });
+            Ok(pythonize::pythonize(py, &value)?)
+        };
+        found.iter().map(as_values).collect()
     }
 
     /// Mass, time and cost of a preform; `None` for a part as it is drawn.

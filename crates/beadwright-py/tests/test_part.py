@@ -93,6 +93,21 @@ def test_a_preform_holds_its_part_with_stock() -> None:
     assert plan(preform, profile).metrics["milled_part_volume_mm3"] == pytest.approx(60 * 40 * 20)
 
 
+def test_a_branched_part_is_divided_into_bodies_that_can_be_planned() -> None:
+    part = Part.example("y-tube")
+    profile = Profile("cmt-steel-abb")
+    *divided, level = part.directions(profile)
+    best = divided[0]
+    assert best["overhang"] < level["overhang"] / 2 and len(best["bodies"]) > len(level["bodies"]) == 1
+    assert [found["overhang"] for found in divided] == sorted(found["overhang"] for found in divided)
+    assert all(found["tilt"] <= 30 + 1e-6 for found in part.directions(profile, tilt=30))
+    welded = plan(part, profile.set({"layers.bodies": best["bodies"]}))
+    rises = [np.ptp(bead.points[:, 2]) for layer in welded.layers for bead in layer.passes]
+    assert max(rises) > 5, "layers of branches are not level"
+    with pytest.raises(BeadwrightError, match="5 to 80 degrees"):
+        part.directions(profile, lean=90)
+
+
 def test_a_file_and_its_triangles_are_the_same_part(tmp_path: Path) -> None:
     corners, faces = prism(polygon(6, 32), 16)
     corners = corners.astype(np.float32).astype(np.float64)

@@ -145,6 +145,25 @@ class Part:
         part._maker = ("preform", self._maker, wanted.key)
         return part
 
+    def directions(
+        self, profile: Profile | StrPath = "cmt-al2319-kuka", *, lean: float = 45.0, tilt: float = 90.0
+    ) -> list[dict[str, Any]]:
+        """Ways to divide the solid into bodies, each built in a direction of its own, so that as little as possible overhangs: the best
+        first, at last the whole of it in level layers.
+
+        Each has ``bodies`` (for ``profile.set({"layers.bodies": ...})``), ``overhang`` (the area that leans by more than ``lean`` degrees
+        from the direction in which it is built, mm²), ``tilt`` (the largest angle between a direction and the vertical, at most ``tilt``
+        degrees: what the positioner can tilt), and ``lean``, which is ``None`` unless a tube has no better layers than those from which its
+        walls lean by so many degrees.
+
+        Raises :class:`BeadwrightError` for a wall given by curves, and for angles out of range.
+        """
+        for what, angle, most in [("lean", lean, 80.0), ("tilt", tilt, 180.0)]:
+            if not 5.0 <= angle <= most:
+                raise BeadwrightError(f"{what} = {angle}: an angle of 5 to {most:.0f} degrees is expected.", what)
+        wanted = profile if isinstance(profile, Profile) else Profile(profile)
+        return self._inner.directions(wanted._inner, lean, tilt)
+
     @property
     def figures(self) -> dict[str, Any] | None:
         """Mass, time and cost of a preform (kg, hours, the currency of the profile); ``None`` for a part as it is drawn."""
