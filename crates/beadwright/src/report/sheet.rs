@@ -13,6 +13,9 @@ pub struct Sheet {
     body: String,
 }
 
+/// Longer cells are sentences, not numbers or names.
+const SENTENCE: usize = 40;
+
 /// A row of a table: its cells, and whether each is to be marked as the best.
 pub type Row = Vec<(String, bool)>;
 
@@ -32,13 +35,17 @@ impl Sheet {
         self.push(&format!("<p>{}</p>", escape(text)))
     }
 
-    /// A table.
+    /// A table. Columns with sentences begin on the left, those with numbers end on the right.
     pub fn table(&mut self, head: &[&str], rows: &[Row]) -> &mut Self {
-        let cell = |(text, best): &(String, bool)| {
-            format!("<td{}>{}</td>", if *best { " class=\"best\"" } else { "" }, escape(text))
+        let is_said = |k: usize| rows.iter().any(|row| row.get(k).is_some_and(|(text, _)| text.len() > SENTENCE));
+        let said: Vec<usize> = (0..head.len()).filter(|k| is_said(*k)).collect();
+        let class = |k: usize| if said.contains(&k) { " class=\"said\"" } else { "" };
+        let cell = |(k, (text, best)): (usize, &(String, bool))| {
+            format!("<td{}>{}</td>", if *best { " class=\"best\"" } else { class(k) }, escape(text))
         };
-        let row = |row: &Row| format!("<tr>{}</tr>", row.iter().map(cell).collect::<String>());
-        let head: String = head.iter().map(|h| format!("<th scope=\"col\">{}</th>", words::headed(h))).collect();
+        let row = |row: &Row| format!("<tr>{}</tr>", row.iter().enumerate().map(cell).collect::<String>());
+        let headed = |(k, text): (usize, &&str)| format!("<th scope=\"col\"{}>{}</th>", class(k), words::headed(text));
+        let head: String = head.iter().enumerate().map(headed).collect();
         let rows: Vec<String> = rows.iter().map(row).collect();
         self.push(&format!("<div class=\"card wide\"><table><tr>{head}</tr>\n{}</table></div>", rows.join("\n")))
     }

@@ -19,6 +19,18 @@ fn entries(names: &[StrategyName]) -> Vec<Entry> {
     entries
 }
 
+/// Numbers end on the right, below each other; sentences begin on the left, where one begins to read.
+#[test]
+fn sentences_in_tables_begin_on_the_left() {
+    let rows = ["all is well", "the current reached 150.0 A where 129.0 A was planned, in layer 3"];
+    let rows: Vec<_> = rows.iter().map(|what| vec![("1".to_owned(), false), ((*what).to_owned(), false)]).collect();
+    let html = Sheet::new("t", "").table(&["layer", "what"], &rows).html();
+    assert!(html.contains("<th scope=\"col\">layer</th><th scope=\"col\" class=\"said\">what</th>"), "{html}");
+    assert_eq!(html.matches("<td class=\"said\">").count(), 2);
+    let html = Sheet::new("t", "").table(&["layer", "what"], &rows[..1]).html();
+    assert!(!html.contains("class=\"said\""), "{html}");
+}
+
 #[test]
 fn what_leaves_the_part_empty_comes_last_and_is_never_best() {
     let names = [StrategyName::Wall, StrategyName::Raster, StrategyName::Zigzag, StrategyName::Loop];
