@@ -72,7 +72,7 @@ fn learn(found: &Found, name: &str, wanted: &Wanted<'_>) -> anyhow::Result<Learn
 /// The text of a profile with the value that trials show.
 fn with_lesson(text: String, lesson: &Lesson) -> anyhow::Result<String> {
     let text = edit::with_value(&text, lesson.key, &format!("{:.3}", lesson.after))?;
-    // A stepover of one's own is no model of overlapping beads.
+    // A given stepover takes the place of the models of overlap.
     Ok(if lesson.key == STEPOVER { edit::with_value(&text, "fill.overlap", "\"free\"")? } else { text })
 }
 

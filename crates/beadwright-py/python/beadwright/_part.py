@@ -154,7 +154,7 @@ class Part:
         Each has ``bodies`` (for ``profile.set({"layers.bodies": ...})``), ``overhang`` (the area that leans by more than ``lean`` degrees
         from the direction in which it is built, mm²), ``tilt`` (the largest angle between a direction and the vertical, at most ``tilt``
         degrees: what the positioner can tilt), and ``lean``, which is ``None`` unless a tube has no better layers than those from which its
-        walls lean by so many degrees.
+        walls lean by that many degrees.
 
         Raises :class:`BeadwrightError` for a wall given by curves, and for angles out of range.
         """

@@ -10,7 +10,7 @@ fn joined(plan: &[PlannedPass], settings: &Settings) -> Record {
     join(plan, &[log("power.csv", &cell.power_log(&Clock::new(0.0, 0.0), 50.0, &[]))], settings).unwrap()
 }
 
-/// What a scan shows of a pass that was planned 1 mm above its path, and is off by so many mm at each place; nothing where it is not known.
+/// What a scan shows of a pass that was planned 1 mm above its path, and is off by the given heights (mm) at its places; nothing where it is not known.
 fn heights(plan: &[PlannedPass], pass: usize, off: impl Fn(f64) -> Option<f64>) -> Heights {
     let top = |(time, spot): (f64, bead_record::Spot)| {
         let planned = spot.at.z + 1.0;
