@@ -1,7 +1,7 @@
 //! `beadwright plan`: streams the layers of a plan into its files and prints a summary.
 
 use crate::several::{Build, Order, Several};
-use crate::{file, model, preform, profile, progress, remedy, say};
+use crate::{directions, file, model, preform, profile, progress, remedy, say};
 use anyhow::Context;
 use beadwright::Finding;
 use beadwright::chart::{Chart, ChartError};
@@ -58,6 +58,9 @@ pub(crate) struct Arguments {
     /// Weld the part as several bodies, one after another, each with its own shape of layers: a TOML file with a [[body]] table for each.
     #[arg(long, value_name = "FILE", conflicts_with = "chart")]
     bodies: Option<PathBuf>,
+    /// Divide the part into bodies by itself, as `beadwright directions` does, and weld it as the best of those that can be welded.
+    #[arg(long, value_name = "auto", value_parser = ["auto"], conflicts_with_all = ["chart", "bodies", "onto", "with", "preform", "from_z"])]
+    directions: Option<String>,
     /// Weld onto an existing part: a model in the coordinates of the part's file. It is placed together with the part and not welded
     /// itself; the first layers must lie on it.
     #[arg(long, value_name = "MODEL", conflicts_with_all = ["with", "preform", "from_z", "lay_flat", "orient"])]
@@ -256,6 +259,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     profile.layers.base = base.as_ref().map(|base| [base.bounds().0, base.bounds().1].map(|corner| corner.to_array()));
     if let Part::Mesh(import) = &model {
         say_size(&import.mesh, &profile)?;
+    }
+    if arguments.directions.is_some() {
+        let mesh = model
+            .mesh()
+            .context("--directions auto: only a solid is divided into bodies, and this part is given by curves")?;
+        profile.layers.bodies = directions::bodies(&part, mesh, &profile, &task)?;
     }
     let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
     let programs = arguments.programs(&arguments.profile, &profile, &part, 0.0)?;

@@ -4,11 +4,10 @@ use crate::array::{Array, Item, Numbers};
 use crate::error::{Refuse, raise};
 use crate::profile::Profile;
 use crate::running::Running;
-use beadwright::directions::{Division, Settings, divisions};
+use beadwright::directions::{Found, Outcome, Settings, Tried, tried};
 use beadwright::model::{self, Import, Model, Placement, Units, units};
 use beadwright::plan::stock::Stocked;
 use beadwright::preform::{faces, figures::Figures};
-use beadwright::profile::Body;
 use beadwright::{Mesh, example, model::PartError};
 use glam::DVec3;
 use pyo3::buffer::PyBuffer;
@@ -186,7 +185,7 @@ impl Part {
         Ok(Self { name: self.name.clone(), part: Arc::new(part), guessed: None, figures: Some(figures) })
     }
 
-    /// Ways to divide a solid into bodies, the best first, and at last the whole of it in level layers.
+    /// Ways to divide a solid into bodies, those that can be welded first, and at last the whole of it in level layers.
     fn directions<'py>(
         &self,
         py: Python<'py>,
@@ -197,17 +196,25 @@ impl Part {
         let bead = profile.profile.bead.width;
         self.fits(bead).refuse(Some(&self.name))?;
         let (mesh, settings) = (self.solid()?, Settings { lean, tilt, bead });
-        let found = Running::new(None, None).run(py, Some(&self.name), |task| divisions(mesh, settings, task))?;
-        let as_values = |division: &Division| {
+        let made = |task: &_| tried(&self.name, mesh, &profile.profile, settings, task);
+        let Found { divisions, .. } = Running::new(None, None).run(py, Some(&self.name), made)?;
+        let as_values = |Tried { division, bodies, outcome }: &Tried| {
+            let (metrics, refused) = match outcome {
+                Outcome::Planned(metrics) => (Some(metrics), None),
+                Outcome::Refused(reason) => (None, Some(reason)),
+                Outcome::Untried => (None, None),
+            };
             let value = serde_json::json!({
-                "bodies": Body::of_division(&self.name, division),
+                "bodies": bodies,
                 "overhang": division.hanging,
                 "tilt": division.tilt,
                 "lean": division.lean,
+                "metrics": metrics,
+                "refused": refused,
             });
             Ok(pythonize::pythonize(py, &value)?)
         };
-        found.iter().map(as_values).collect()
+        divisions.iter().map(as_values).collect()
     }
 
     /// Mass, time and cost of a preform; `None` for a part as it is drawn.

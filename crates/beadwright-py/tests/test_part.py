@@ -102,9 +102,12 @@ def test_an_arm_that_overhangs_is_a_body_of_its_own() -> None:
     best = divided[0]
     assert level["overhang"] == pytest.approx(90 * 40, rel=0.05) and len(level["bodies"]) == 1
     assert best["overhang"] < 36 and len(best["bodies"]) == 2
+    assert best["refused"] is None and best["metrics"]["layers"] > 60
+    assert level["metrics"] is None and level["refused"] is None, "not needed"
     assert all(found["tilt"] <= 30 for found in part.directions(profile, tilt=30))
     welded = plan(part, profile.set({"layers.bodies": best["bodies"]}))
     assert any("welded as 2 bodies" in note for note in welded.notes)
+    assert welded.metrics["arc_starts"] == best["metrics"]["arc_starts"]
     with pytest.raises(BeadwrightError, match="5 to 80 degrees"):
         part.directions(profile, lean=90)
 

@@ -25,6 +25,7 @@ pub mod as_built;
 pub mod build;
 pub mod check;
 pub mod compare;
+pub mod directions;
 pub mod distortion;
 pub mod export;
 pub mod files;
@@ -45,7 +46,7 @@ pub mod simulate;
 
 pub use bead_part::{chart, example, model, slice};
 #[doc(hidden)]
-pub use bead_part::{cladding, curve, damage, deviation, directions, finding, middle_line, task, text, warning};
+pub use bead_part::{cladding, curve, damage, deviation, finding, middle_line, task, text, warning};
 use bead_plan::random;
 pub use bead_plan::{bead, deposit, fill, heat, preform};
 #[doc(hidden)]

@@ -188,3 +188,23 @@ fn faults_of_a_file_of_bodies_are_named() {
     let why = fails(folder.path(), &["plan", "cross", "--bodies", "missing.toml"]);
     assert!(why.contains("missing.toml"), "{why}");
 }
+
+/// The same bodies as `directions` writes, in one command; a part that needs none is planned in level layers.
+#[test]
+fn a_part_is_divided_while_it_is_planned() {
+    let folder = TempDir::new().unwrap();
+    done(folder.path(), &["example", "hub", "-o", "hub.stl"]);
+    let output = run(folder.path(), &["directions", "hub.stl", "-o", "found.toml"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && said.contains("It can be welded: "), "{said}");
+    let plan = |part: &str, how: &[&str]| {
+        let all = [&["plan", part, "--no-deposit", "--json", "-o", "out"], how].concat();
+        let json: serde_json::Value = serde_json::from_str(&done(folder.path(), &all)).unwrap();
+        (json["arc_starts"].as_u64(), json["layers"].as_u64(), json["deposited_volume_mm3"].as_f64())
+    };
+    let auto = plan("hub.stl", &["--directions", "auto"]);
+    assert!(auto.0.is_some() && auto == plan("hub.stl", &["--bodies", "found.toml"]), "{auto:?}");
+    assert_eq!(plan("cross", &["--directions", "auto"]), plan("cross", &[]));
+    let why = fails(folder.path(), &["plan", "hub.stl", "--directions", "auto", "--bodies", "found.toml"]);
+    assert!(why.contains("cannot be used with"), "{why}");
+}

@@ -148,13 +148,14 @@ class Part:
     def directions(
         self, profile: Profile | StrPath = "cmt-al2319-kuka", *, lean: float = 45.0, tilt: float = 90.0
     ) -> list[dict[str, Any]]:
-        """Ways to divide the solid into bodies, each built in a direction of its own, so that as little as possible overhangs: the best
-        first, at last the whole of it in level layers.
+        """Ways to divide the solid into bodies, each built in a direction of its own, so that as little as possible overhangs: those that
+        can be welded first, at last the whole of it in level layers.
 
         Each has ``bodies`` (for ``profile.set({"layers.bodies": ...})``), ``overhang`` (the area that leans by more than ``lean`` degrees
         from the direction in which it is built, mm²), ``tilt`` (the largest angle between a direction and the vertical, at most ``tilt``
         degrees: what the positioner can tilt), and ``lean``, which is ``None`` unless a tube has no better layers than those from which its
-        walls lean by that many degrees.
+        walls lean by that many degrees. Each is planned for trial: ``metrics`` are those of its plan, ``refused`` is the reason why it cannot be
+        welded. Both are ``None`` for level layers if another way can be welded.
 
         Raises :class:`BeadwrightError` for a wall given by curves, and for angles out of range.
         """

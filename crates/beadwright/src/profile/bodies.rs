@@ -2,9 +2,9 @@
 
 use super::{Predict, Profile};
 use crate::chart::{self, Bound, Chart};
-use crate::directions::{Division, Piece};
 use crate::fill::StrategyName;
 use crate::model::{Mesh, Object, Solids};
+use bead_part::directions::{Division, Piece};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;

@@ -94,7 +94,7 @@ const CRATES: &[(&str, &[&[&str]])] = &[
             &["profile"],
             &["metrics"],
             &["plan"],
-            &["plan_file", "check"],
+            &["plan_file", "check", "directions"],
             &["report"],
             &["as_built", "distortion", "export", "files", "simulate"],
             &["adapt"],

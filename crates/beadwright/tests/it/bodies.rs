@@ -5,7 +5,7 @@ use crate::common;
 
 use beadwright::as_built::as_built;
 use beadwright::chart::Bound;
-use beadwright::directions::{Settings, divisions};
+use beadwright::directions::{Found, Outcome, Settings, divisions, tried};
 use beadwright::layer::Layer;
 use beadwright::model::{Import, Mesh, Object, Part, RepairReport, solid::Solid};
 use beadwright::plan::{self, Plan, PlanError};
@@ -518,6 +518,58 @@ fn directions_that_are_found_are_planned() {
         assert_eq!(plan.summary.forbidden, [] as [String; 0], "{name}");
         assert!(plan.summary.metrics.layers.abs_diff(layers) <= 1, "{name}: {}", plan.summary.metrics.layers);
         assert!(plan.summary.metrics.coverage() > 0.99, "{name}: {}", plan.summary.metrics.coverage());
+    }
+}
+
+/// A box from its lowest to its highest corner, mm, turned about z.
+fn block(low: [f64; 3], high: [f64; 3], degrees: f64) -> Mesh {
+    let [a, b] = [low, high].map(|[x, y, _]| DVec2::new(x, y));
+    let ring = Ring::new(vec![a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)]);
+    let Solid { vertices, triangles } = Solid::extrude(&Polygon::simple(ring), low[2], high[2]);
+    let turn = DMat3::from_rotation_z(degrees.to_radians());
+    Mesh::from_triangles(vertices.into_iter().map(|p| turn * p).collect(), triangles).0
+}
+
+/// What is offered first can be welded, and what cannot says why: a post with two arms, and a bridge on two posts, which planes
+/// cannot divide.
+#[test]
+fn directions_that_are_offered_first_can_be_welded() {
+    let profile = profile("cmt-steel-abb");
+    let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
+    let found = |blocks: &[([f64; 3], [f64; 3])], degrees: f64| -> (Mesh, Found) {
+        let mut mesh = Mesh::default();
+        blocks.iter().for_each(|(low, high)| mesh.add(block(*low, *high, degrees)));
+        let found = tried("post", &mesh, &profile, settings, &Task::new()).unwrap();
+        (mesh, found)
+    };
+    let arms = [
+        ([-20.0, 0.0, 0.0], [20.0, 40.0, 90.0]),
+        ([20.0, 0.0, 60.0], [90.0, 40.0, 90.0]),
+        ([-80.0, 0.0, 40.0], [-20.0, 40.0, 65.0]),
+    ];
+    for degrees in [0.0, 37.0] {
+        let (mesh, Found { divisions, tilted }) = found(&arms, degrees);
+        let (level, tried) = divisions.split_last().unwrap();
+        assert!(tried[0].is_planned() && tried[0].bodies.len() == 3, "{degrees}°: {:?}", tried[0]);
+        assert!(tried.is_sorted_by_key(|tried| !tried.is_planned()) && tilted.is_none(), "{degrees}°");
+        assert_eq!(level.outcome, Outcome::Untried, "{degrees}°: not needed");
+        let mut own = profile.clone();
+        own.layers.bodies = Body::read(&Body::write(&tried[0].bodies)).unwrap();
+        let plan = planned(&mesh, &own).unwrap();
+        assert_eq!(plan.summary.forbidden, [] as [String; 0], "{degrees}°");
+        let Outcome::Planned(metrics) = &tried[0].outcome else { unreachable!() };
+        assert_eq!(**metrics, plan.summary.metrics, "{degrees}°: its figures are those of its plan");
+        assert!(metrics.coverage() > 0.99, "{degrees}°: {}", metrics.coverage());
+    }
+    let posts = [
+        ([-60.0, 0.0, 0.0], [-30.0, 40.0, 60.0]),
+        ([30.0, 0.0, 0.0], [60.0, 40.0, 60.0]),
+        ([-60.0, 0.0, 60.0], [60.0, 40.0, 90.0]),
+    ];
+    let (_, Found { divisions, .. }) = found(&posts, 0.0);
+    for tried in divisions {
+        let Outcome::Refused(why) = tried.outcome else { panic!("{:?}", tried.bodies) };
+        assert!(why.ends_with('.') && why.contains("mm"), "{why}");
     }
 }
 

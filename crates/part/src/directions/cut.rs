@@ -40,33 +40,36 @@ pub(super) fn cut(state: &State, plane: Plane, judge: &Judge) -> Option<State> {
     if area(samples.iter()) < LEAST * judge.surface || thickness(&trunk, plane.up) < THICK * judge.settings.bead {
         return None;
     }
-    let (groups, hanging) = groups(&upper, plane, judge);
+    let (groups, [hanging, skew]) = groups(&upper, plane, judge);
     // Undersides of the part itself that lie in the plane are not made by the cut.
     let hanging = hanging + area(state.samples.iter().filter(|sample| judge.stands(sample, plane)));
     let pieces = pieces(&groups, plane, &state.cuts)?;
     let hanging = [judge.hanging(&samples, DVec3::Z, judge.table()), state.hanging[1] + hanging];
     let all: Vec<Piece> = state.pieces.iter().cloned().chain(pieces).collect();
     let tilted = all.iter().map(Piece::tilt).fold(0.0, f64::max);
-    let cost = hanging.iter().sum::<f64>() + judge.pieces(all.len()) + judge.tilt(tilted);
+    let skew = state.skew + skew;
+    let cost = hanging.iter().sum::<f64>() + skew + judge.pieces(all.len()) + judge.tilt(tilted);
     let cuts = state.cuts.iter().copied().chain([down]).collect();
-    Some(State { trunk, samples, cuts, pieces: all, hanging, cost })
+    Some(State { trunk, samples, cuts, pieces: all, hanging, skew, cost })
 }
 
-/// What was taken off, grouped by direction, and how much of it still overhangs, mm².
-fn groups(upper: &Mesh, plane: Plane, judge: &Judge) -> (Vec<Group>, f64) {
+/// What was taken off, grouped by direction; how much of it still overhangs, and what it costs that the cut lies at an angle
+/// to the layers on both of its sides, mm².
+fn groups(upper: &Mesh, plane: Plane, judge: &Judge) -> (Vec<Group>, [f64; 2]) {
     let solids = Solids::of(upper);
-    let (mut groups, mut hanging): (Vec<Group>, f64) = (Vec::new(), 0.0);
+    let (mut groups, mut hanging, mut skew): (Vec<Group>, f64, f64) = (Vec::new(), 0.0, 0.0);
     for mesh in solids.each() {
         let samples = samples(&mesh, judge.size);
         let best = judge.best(&samples, plane);
         let up = if best.angle_between(plane.up).to_degrees() < SAME { plane.up } else { best };
         hanging += judge.hanging(&samples, up, plane);
+        skew += judge.skew(&samples, up, plane) + judge.skew(&samples, DVec3::Z, plane);
         match groups.iter_mut().find(|group| group.up.angle_between(up).to_degrees() < SAME) {
             Some(group) => group.mesh.add(mesh),
             None => groups.push(Group { up, mesh }),
         }
     }
-    (groups, hanging)
+    (groups, [hanging, skew])
 }
 
 /// The groups as pieces above a plane, separated from each other by further planes.

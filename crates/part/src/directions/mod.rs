@@ -87,7 +87,10 @@ const BETTER: f64 = 0.7;
 const WORTH: f64 = 0.004;
 /// What a piece, and a tilt of 90°, cost as overhang, as fractions of the surface.
 const PIECE: f64 = 0.002;
-const TILT: f64 = 0.02;
+const TILT: f64 = 0.01;
+/// What a cut costs at 45° to the layers beside it, as a fraction of its area: both pieces end there in wedges, too thin for a
+/// bead at their tips.
+const SKEW: f64 = 1.0;
 /// A part branches if some of its surface is farther from the middle line than this many times the mean distance.
 const BRANCHES: f64 = 2.5;
 /// A middle line within this of horizontal, °, counts as horizontal.
@@ -105,6 +108,8 @@ struct State {
     pieces: Vec<Piece>,
     /// Overhang of the trunk, and of the pieces, mm².
     hanging: [f64; 2],
+    /// What it costs that cuts lie at an angle to layers, as an area, mm².
+    skew: f64,
     cost: f64,
 }
 
@@ -134,24 +139,42 @@ pub fn divisions(mesh: &Mesh, settings: Settings, task: &Task) -> Result<Vec<Div
         return Ok(vec![whole.division()]);
     }
     let recognized = tube(mesh, &judge, &whole, task)?.into_iter().chain(tubes::tubes(&whole, &judge));
-    let recognized = recognized.chain(around::around(&whole, &judge));
-    let mut offered: Vec<Division> = recognized.collect();
-    if offered.iter().any(|division| division.hanging <= judge.nothing) {
-        offered.push(whole.division());
-        return Ok(offered);
+    let mut offered: Vec<Division> = recognized.chain(around::around(&whole, &judge)).collect();
+    if !offered.iter().any(|division| division.hanging <= judge.nothing) {
+        search(&whole, &judge, &mut offered, task)?;
     }
+    offered.push(whole.division());
+    Ok(offered)
+}
+
+/// The divisions by planes alone, the best first, whatever else the part may be.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn by_planes(mesh: &Mesh, settings: Settings, task: &Task) -> Result<Vec<Division>, Cancelled> {
+    let samples = samples(mesh, mesh.size().length());
+    let judge = Judge::new(mesh, &samples, settings);
+    let mut offered = Vec::new();
+    search(&State::whole(mesh, samples, &judge), &judge, &mut offered, task)?;
+    Ok(offered)
+}
+
+/// Adds divisions by planes to those that are offered, searched by beams.
+fn search(whole: &State, judge: &Judge, offered: &mut Vec<Division>, task: &Task) -> Result<(), Cancelled> {
     let (mut open, mut ended) = (vec![whole.clone()], Vec::new());
     for _ in 0..CUTS {
         let mut next: Vec<State> = Vec::new();
         for state in &open {
-            let planes = ways::planes(&state.samples, &judge);
-            let cut = |plane| task.check().map(|()| cut::cut(state, plane, &judge));
+            let planes = ways::planes(&state.samples, judge);
+            let cut = |plane| task.check().map(|()| cut::cut(state, plane, judge));
             let cut = planes.into_par_iter().map(cut).collect::<Result<Vec<_>, Cancelled>>()?;
             let better = |other: &State| other.cost < state.cost - judge.surface * WORTH;
             next.extend(cut.into_iter().flatten().filter(better));
         }
         next.sort_by(|a, b| a.cost.total_cmp(&b.cost));
-        next.truncate(BEAM);
+        // Cuts at an angle spare more at once, cuts along and square to layers leave no wedges: both are pursued.
+        let (mut all, mut square) = (0..BEAM, 0..BEAM);
+        next.retain(|state| all.next().is_some() || state.skew <= judge.nothing && square.next().is_some());
         ended.extend(next.iter().cloned());
         open = next.into_iter().filter(|state| state.hanging[0] > judge.nothing).collect();
         if open.is_empty() {
@@ -165,8 +188,7 @@ pub fn divisions(mesh: &Mesh, settings: Settings, task: &Task) -> Result<Vec<Div
             offered.push(division);
         }
     }
-    offered.push(whole.division());
-    Ok(offered)
+    Ok(())
 }
 
 /// A bent tube or bar as one piece along its middle line.
@@ -223,7 +245,7 @@ impl State {
     fn whole(mesh: &Mesh, samples: Vec<Sample>, judge: &Judge) -> Self {
         let hanging = judge.hanging(&samples, DVec3::Z, judge.table());
         let trunk = mesh.clone();
-        Self { trunk, samples, cuts: Vec::new(), pieces: Vec::new(), hanging: [hanging, 0.0], cost: hanging }
+        Self { trunk, samples, cuts: Vec::new(), pieces: Vec::new(), hanging: [hanging, 0.0], skew: 0.0, cost: hanging }
     }
 
     fn division(self) -> Division {
@@ -236,14 +258,14 @@ impl State {
 }
 
 impl Division {
-    /// Whether it has as many pieces as another, along the same directions.
+    /// Whether it has as many pieces as another, along the same directions, in whatever order.
     fn is_like(&self, other: &Self) -> bool {
         let up = |piece: &Piece| match &piece.chart {
             Chart::Plane(plane) => plane.up,
             _ => DVec3::ZERO,
         };
-        let near = |(a, b): (&Piece, &Piece)| up(a).distance(up(b)) < ALIKE;
-        self.pieces.len() == other.pieces.len() && self.pieces.iter().zip(&other.pieces).all(near)
+        let is_there = |a: &Piece| other.pieces.iter().any(|b| up(a).distance(up(b)) < ALIKE);
+        self.pieces.len() == other.pieces.len() && self.pieces.iter().all(is_there)
     }
 }
 

@@ -3,8 +3,9 @@
 //! Cylinders are found by pairs of surface samples, whose normals both meet the axis (as in RANSAC by Schnabel et al.
 //! 2007), and made better by all the samples that lie on them. A branch goes on in the layers of the tube that carries it
 //! if it leans no more from them than a wall may. Otherwise its layers lie around that tube, so that the first is as wide
-//! as all others. Layers square to the branch come last: the first of them are crescents beside the tube, mostly with no
-//! room for a bead, so a wall may rather lean somewhat more.
+//! as all others; or flat on the place where it begins, as far as the part may be tilted. Layers square to the branch come
+//! last: the first of them are crescents beside the tube, mostly with no room for a bead, so a wall may rather lean
+//! somewhat more.
 
 use super::around::{is_round, middle};
 use super::samples::{FINE, Sample, area};
@@ -47,6 +48,8 @@ const POWERS: usize = 60;
 const FLATTEST: f64 = 0.3;
 /// A tube leans at most this much from its layers, °: of 2 mm layers and 7 mm beads, half a bead then lies on the one below.
 const MOST_LEAN: f64 = 60.0;
+/// Flat layers this much off the surface on which they begin, °, soon have room for a bead: in a bar of 15 mm within 4 mm.
+const SKEW: f64 = 15.0;
 /// Directions that are found may lie this much beyond the largest tilt, °.
 const BEYOND: f64 = 1.0;
 /// Pieces of one part may lie this far over their bounds, mm.
@@ -235,11 +238,14 @@ impl Tree {
         let away = up.reject_from_normalized(carrier.tube.axis).normalize_or(up);
         let below = &self.pieces[carrier.piece];
         let on = [start, tip].map(|p| degrees(stacked(below, p), up)).into_iter().fold(0.0, f64::max);
-        let around = Some(degrees(away, up)).filter(|_| lies(away) <= judge.settings.tilt + BEYOND);
-        let (layers, lean) = Layers::of(on, around, judge.settings.lean);
+        let tilt = judge.settings.tilt;
+        let around = Some(degrees(away, up)).filter(|_| lies(away) <= tilt + BEYOND);
+        let flat = raised(away, tilt);
+        let (layers, lean) = Layers::of(on, around, (degrees(flat, up), degrees(flat, away)), judge.settings.lean);
         if lean > judge.settings.lean {
             self.lean = self.lean.max(lean);
         }
+        let plane = |up: DVec3| Chart::Plane(Plane { origin: start, up }.rounded());
         let (side, chart, last) = match layers {
             Layers::Carriers => {
                 // A little into the carrier, so that they are one.
@@ -252,7 +258,8 @@ impl Tree {
                 let half = Plane { origin: carrier.tube.through + carrier.tube.axis * other, up: away };
                 (away, carrier.tube.around(away), Bound::Plane(half.rounded()))
             }
-            Layers::Square => (up, Chart::Plane(Plane { origin: start, up }.rounded()), carrier.tube.outside()),
+            Layers::Flat => (flat, plane(flat), carrier.tube.outside()),
+            Layers::Square => (up, plane(up), carrier.tube.outside()),
         };
         within.push(last);
         self.tilt = self.tilt.max(lies(side));
@@ -268,22 +275,34 @@ enum Layers {
     Carriers,
     /// Around the carrier: the first is as wide as all others.
     Around,
+    /// Flat, nearly along the carrier's surface where the tube begins, as far as the part may be tilted.
+    Flat,
     /// Square to the tube.
     Square,
 }
 
 impl Layers {
-    /// The first of them from which the tube leans no more than a wall should, `lean`; if it leans more from both kinds that
-    /// begin on all of the carrier, the one from which it leans less, within reason. And how much it leans, °.
-    fn of(carriers: f64, around: Option<f64>, lean: f64) -> (Self, f64) {
+    /// The first of them from which the tube leans no more than a wall should, `lean`, and that soon have room for a bead; if
+    /// there are none, those from which it leans least, within reason. And how much it leans, °. `flat` is how much it leans
+    /// from flat layers, and they from the surface on which they begin.
+    fn of(carriers: f64, around: Option<f64>, (flat, skew): (f64, f64), lean: f64) -> (Self, f64) {
         match around {
             _ if carriers <= lean => (Self::Carriers, carriers),
             Some(around) if around <= lean => (Self::Around, around),
+            None if flat <= lean && skew <= SKEW => (Self::Flat, flat),
             Some(around) if around < carriers && around <= MOST_LEAN => (Self::Around, around),
             _ if carriers <= MOST_LEAN => (Self::Carriers, carriers),
+            _ if flat <= MOST_LEAN => (Self::Flat, flat),
             _ => (Self::Square, 0.0),
         }
     }
+}
+
+/// The direction nearest to another that lies at most this far from the vertical, °.
+fn raised(way: DVec3, tilt: f64) -> DVec3 {
+    let (sin, cos) = tilt.to_radians().sin_cos();
+    let level = DVec3::new(way.x, way.y, 0.0).normalize_or(DVec3::X);
+    if lies(way) <= tilt { way } else { level * sin + DVec3::Z * cos }
 }
 
 fn degrees(a: DVec3, b: DVec3) -> f64 {

@@ -1,7 +1,7 @@
 //! Candidate directions, and how well they suit a piece.
 
 use super::samples::{Sample, area};
-use super::{PIECE, Settings, TILT, TRIES, WORTH};
+use super::{PIECE, SKEW, Settings, TILT, TRIES, WORTH};
 use crate::chart::Plane;
 use crate::model::Mesh;
 use glam::{DQuat, DVec3};
@@ -13,12 +13,16 @@ const SPREAD: usize = 160;
 /// The largest flat faces also give directions; their normals are binned on a grid of this spacing.
 const FACES: usize = 16;
 const SAME_FACE: f64 = 0.02;
+/// A face is upright if its normal rises by less than this.
+const UPRIGHT: f64 = 1e-6;
 /// Angles by which a direction is turned in search of a better one, °.
 const TURNS: [f64; 5] = [6.0, 3.0, 1.5, 0.5, 0.1];
 /// Axes tried for each such turn.
 const TRIED: usize = 12;
 /// Heights along a direction at which a part may be cut.
 const HEIGHTS: usize = 60;
+/// How far outside a face a cut along it lies, mm.
+const OUTSIDE: f64 = 0.01;
 /// Along each direction, the planes tried spare these fractions of the most that one plane can.
 const SHARES: [f64; 4] = [1.0, 0.9, 0.7, 0.45];
 /// Two planes are alike if their directions differ by less than this, °, and their heights by less than this fraction
@@ -57,8 +61,12 @@ impl Judge {
         let steep = settings.lean.to_radians().sin();
         let least = settings.tilt.to_radians().cos() - 1e-6;
         let faces = faces(mesh);
-        let ways = std::iter::once(DVec3::Z).chain(faces.iter().copied()).chain(spread());
-        let ways = ways.filter(|way| way.z >= least.max(0.0)).collect();
+        let upright = faces.iter().filter(|face| face.z < UPRIGHT).map(|face| -*face);
+        let own: Vec<DVec3> = std::iter::once(DVec3::Z).chain(faces.iter().copied()).chain(upright).collect();
+        // A cut slightly off a face would leave a sliver there.
+        let beside = |way: &DVec3| !own.iter().any(|own| own.angle_between(*way).to_degrees() < SAME_CUT.0);
+        let ways = own.iter().copied().chain(spread().filter(beside));
+        let ways = ways.filter(|way| way.z >= least.max(-UPRIGHT)).collect();
         let nothing = NOTHING * settings.bead.powi(2);
         Self { settings, size: mesh.size().length(), surface, nothing, steep, ways, faces }
     }
@@ -96,7 +104,14 @@ impl Judge {
     fn cost(&self, samples: &[Sample], up: DVec3, base: Plane) -> f64 {
         let leaning = samples.iter().filter(|sample| !self.stands(sample, base));
         let leaning: f64 = leaning.map(|sample| sample.area * (-sample.normal.dot(up)).max(0.0)).sum();
-        self.hanging(samples, up, base) + LEANS * leaning + self.tilt(lies(up))
+        self.hanging(samples, up, base) + LEANS * leaning + self.tilt(lies(up)) + self.skew(samples, up, base)
+    }
+
+    /// The cost of layers square to `up` at the cut on which a piece stands, as an area, mm²: nothing where they lie along the
+    /// cut or square to it.
+    pub(super) fn skew(&self, samples: &[Sample], up: DVec3, cut: Plane) -> f64 {
+        let standing = area(samples.iter().filter(|sample| self.stands(sample, cut)));
+        SKEW * standing * (2.0 * up.angle_between(cut.up)).sin().abs()
     }
 
     /// The cost of a build direction at this angle from the vertical, °, as an area, mm².
@@ -140,7 +155,7 @@ pub(super) fn lies(up: DVec3) -> f64 {
     up.angle_between(DVec3::Z).to_degrees()
 }
 
-/// Planes that take off most of what overhangs, the best first.
+/// Planes that take off most of what overhangs, those along large faces first.
 pub(super) fn planes(samples: &[Sample], judge: &Judge) -> Vec<Plane> {
     let table = judge.table();
     let hangs = |sample: &Sample| judge.hangs(sample, DVec3::Z) && !judge.stands(sample, table);
@@ -149,11 +164,17 @@ pub(super) fn planes(samples: &[Sample], judge: &Judge) -> Vec<Plane> {
         let heights = samples.iter().map(|sample| up.dot(sample.place));
         let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), h| (low.min(h), high.max(h)));
         let step = (high - low) / HEIGHTS as f64;
-        let mut areas = vec![[0.0; 2]; HEIGHTS];
+        let (mut areas, mut faces) = (vec![[0.0; 2]; HEIGHTS], vec![[0.0; 3]; HEIGHTS]);
         for (sample, hanging) in samples.iter().zip(&hanging) {
-            let at = (((up.dot(sample.place) - low) / step) as usize).min(HEIGHTS - 1);
+            let height = up.dot(sample.place);
+            let at = (((height - low) / step) as usize).min(HEIGHTS - 1);
             areas[at][0] += f64::from(u8::from(*hanging)) * sample.area;
             areas[at][1] += f64::from(u8::from(judge.hangs(sample, *up))) * sample.area;
+            let faces_it = sample.normal.dot(*up);
+            if faces_it.abs() > FACES_IT {
+                let sums = [sample.area, sample.area * height, sample.area * faces_it];
+                sums.into_iter().zip(&mut faces[at]).for_each(|(own, sum)| *sum += own);
+            }
         }
         let (mut spared, mut left, mut found) = (0.0, 0.0, Vec::new());
         for k in (1..HEIGHTS).rev() {
@@ -166,17 +187,26 @@ pub(super) fn planes(samples: &[Sample], judge: &Judge) -> Vec<Plane> {
         // For each fraction, the highest plane that spares so much: it takes off no more than it must.
         let highest = |share: &f64| found.iter().copied().find(|(worth, ..)| *worth >= share * most);
         let worthwhile = |(_, spared, _): &(f64, f64, Plane)| *spared > WORTH * judge.surface;
-        SHARES.iter().filter_map(highest).filter(worthwhile).map(|(worth, _, plane)| (worth, plane)).collect::<Vec<_>>()
+        let by_share =
+            SHARES.iter().filter_map(highest).filter(worthwhile).map(|(worth, _, plane)| (false, worth, plane));
+        // Along a large face, a cut leaves no slab, and a little outside it, no film. `found` begins with the highest.
+        let along_face = |(found, [area, sum, facing]): (&(f64, f64, Plane), &[f64; 3])| {
+            let plane = Plane { origin: *up * (sum / area + OUTSIDE * facing.signum()), up: *up };
+            (worthwhile(found) && *area > WORTH * judge.surface).then_some((true, found.0, plane))
+        };
+        let along_faces = found.iter().zip(faces[1..].iter().rev()).filter_map(along_face);
+        along_faces.chain(by_share).collect::<Vec<_>>()
     };
-    let mut found: Vec<(f64, Plane)> = judge.ways.par_iter().flat_map_iter(along).collect();
-    found.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut found: Vec<(bool, f64, Plane)> = judge.ways.par_iter().flat_map_iter(along).collect();
+    found.sort_by(|a, b| b.0.cmp(&a.0).then(b.1.total_cmp(&a.1)));
     let mut planes: Vec<Plane> = Vec::new();
-    for (_, plane) in found {
+    for (along_face, _, plane) in found {
         let alike = |other: &Plane| {
             other.up.angle_between(plane.up).to_degrees() < SAME_CUT.0
                 && (other.up.dot(plane.origin - other.origin)).abs() < SAME_CUT.1 * judge.size
         };
-        if planes.len() < TRIES && !planes.iter().any(alike) {
+        let room = if along_face { TRIES / 2 } else { TRIES };
+        if planes.len() < room && !planes.iter().any(alike) {
             planes.push(plane.rounded());
         }
     }

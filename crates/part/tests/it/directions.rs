@@ -156,3 +156,33 @@ fn directions_stay_within_the_tilt() {
         }
     }
 }
+
+/// Cuts at 45° would spare all arms at once, and leave wedges without room for a bead.
+#[test]
+fn arms_are_cut_off_along_the_faces_of_their_post() {
+    let both = [
+        (0.0, 0.0),
+        (40.0, 0.0),
+        (40.0, 60.0),
+        (130.0, 60.0),
+        (130.0, 90.0),
+        (0.0, 90.0),
+        (0.0, 65.0),
+        (-90.0, 65.0),
+        (-90.0, 40.0),
+        (0.0, 40.0),
+    ];
+    for degrees in [0.0, 17.0, 90.0, 203.0] {
+        let best = found(&upright(&both, degrees), SETTINGS).remove(0);
+        assert!(best.hanging < 20.0 && best.pieces.len() == 3, "{degrees}°: {best:?}");
+        let along = DQuat::from_rotation_z(f64::to_radians(degrees)) * DVec3::X;
+        let mut ends: Vec<f64> = Vec::new();
+        for piece in &best.pieces[1..] {
+            let Chart::Plane(plane) = &piece.chart else { panic!("{best:?}") };
+            assert!(plane.up.cross(along).length() < 1e-3, "{degrees}°: {}", plane.up);
+            ends.push(plane.origin.dot(along));
+        }
+        ends.sort_by(f64::total_cmp);
+        assert!(ends[0].abs() < 0.05 && (ends[1] - 40.0).abs() < 0.05, "{degrees}°: {ends:?}");
+    }
+}

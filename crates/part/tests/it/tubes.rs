@@ -145,6 +145,26 @@ fn a_branch_on_a_branch_gets_layers_around_it_where_the_part_can_be_turned_over(
     }
 }
 
+/// Where the part cannot be turned over for layers around a branch, flat ones nearly along its surface begin with room for a
+/// bead; those square to the branch would begin as crescents.
+#[test]
+fn a_branch_below_the_horizon_begins_flat_on_the_one_that_carries_it() {
+    for turned in [0.0, 131.0] {
+        let turn = DQuat::from_rotation_z(f64::to_radians(turned));
+        // Away from its carrier it points 9° below the horizon.
+        let along = DQuat::from_rotation_y(f64::to_radians(30.0)) * DVec3::new(0.1, 0.94, 0.28).normalize();
+        let (mesh, bar) = branch_on_branch(30.0, along, turn);
+        let (best, chart) = layers_of(&mesh, &bar, SETTINGS);
+        let Chart::Plane(plane) = chart else { panic!("at {turned}°: {chart}") };
+        let carrier = turn * DQuat::from_rotation_y(f64::to_radians(30.0)) * DVec3::Z;
+        let away = bar.along.reject_from(carrier).normalize();
+        let skew = plane.up.angle_between(away).to_degrees();
+        assert!(skew <= 15.0, "at {turned}°: {skew}° off the carrier's surface");
+        assert!(plane.up.angle_between(bar.along).to_degrees() <= 45.0, "at {turned}°: {plane:?}");
+        assert!(best.tilt <= 91.0, "at {turned}°: {}", best.tilt);
+    }
+}
+
 /// Inside and outside of a cylinder are the whole, wherever it lies; and a bar across a bar has the volume of the integral.
 #[test]
 fn a_cylinder_parts_a_bar_in_two() {
