@@ -24,7 +24,7 @@ const ACCURACY: f64 = 0.05;
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let width = subject.profile.bead.width;
     let reach = subject.profile.check.max_overhang * width;
-    let islands = |below: &Layer, layer: &Layer| match Across::layers(subject.profile, below, layer) {
+    let islands = |below: &Layer, layer: &Layer| match Across::layers(&subject.profile.layers.chart, below, layer) {
         Some(across) => across.islands(&below.islands),
         None => below.islands.clone(),
     };

@@ -25,7 +25,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let mut findings = Vec::new();
     let mut lower: Option<&Layer> = None;
     for &layer in &subject.layers {
-        if let Some(across) = lower.and_then(|lower| Across::layers(subject.profile, lower, layer)) {
+        if let Some(across) = lower.and_then(|lower| Across::layers(&subject.profile.layers.chart, lower, layer)) {
             below = below.iter().flat_map(|(p, count)| across.places(*p).map(move |p| (p, *count))).collect();
         }
         let mut here = Vec::with_capacity(layer.passes.len());

@@ -4,6 +4,7 @@ use super::{Check, Finding, Subject};
 use crate::bead::MassBalance;
 use crate::layer::Lit;
 use crate::pass::{PassKind, Segment};
+use crate::plan::AsWelded;
 use crate::process::Follow;
 
 pub(super) const CHECK: Check = Check {
@@ -18,7 +19,7 @@ pub(super) const CHECK: Check = Check {
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
     let profile = subject.profile;
     let (process, balance) = (&profile.process, profile.mass_balance());
-    let (settings, dot) = (profile.pace_settings(), profile.dot());
+    let (settings, dot, welded) = (profile.pace_settings(), profile.dot(), AsWelded::of(profile));
     let nominal = balance.warning().map(|text| CHECK.of_plan(text));
     let along = subject.passes().filter_map(|(layer, i, pass)| {
         let paces = settings.in_layer(subject.number_in_body(layer), layer.height);
@@ -32,7 +33,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         let most = if layer.lit.is_turn() { 1.0 / Lit::LEAST } else { 1.0 };
         let wedge = profile.layers.wedge(layer);
         let thicker =
-            |s: &Segment| wedge.as_ref().map_or(1.0, |wedge| wedge.thicker(s, profile.usual_height(layer.height)));
+            |s: &Segment| wedge.as_ref().map_or(1.0, |wedge| wedge.thicker(s, welded.usual_height(layer.height)));
         let off = |s: &Segment| {
             let ratio = s.pace * thicker(s) / fitting(s.width);
             ratio < 1.0 - MassBalance::TOLERANCE || ratio > most * (1.0 + MassBalance::TOLERANCE)
