@@ -160,7 +160,7 @@ impl<S: Sink> Emitter<'_, S> {
 
     /// Shares out the metal of a level layer, and measures what it covers of the islands whose `reaches` are known.
     fn share(&self, layer: &mut Layer, reaches: &[Option<Reach>], wedge: Option<&Wedge<'_>>) {
-        let bands = self.settings.filling.unrolling.bands(layer);
+        let bands = self.settings.unrolling.bands(layer);
         let of = bands.as_ref().map(|bands| {
             let (pieces, of) = bands.cut(&layer.passes);
             layer.passes = pieces;

@@ -5,7 +5,7 @@ use crate::chart::Chart;
 use crate::deposit::{DepositSettings, Nominal};
 use crate::layer::Layer;
 use crate::process::StartStop;
-use crate::profile::Profile;
+use crate::profile::{LayersSection, Profile};
 use crate::weld;
 use glam::DVec3;
 use planar::Bounds;
@@ -30,6 +30,11 @@ impl AsWelded<'_> {
         let mut even = layer.clone();
         wedge.even(&mut even.passes);
         Cow::Owned(even)
+    }
+
+    /// How layers lie in space.
+    pub(crate) fn layers(&self) -> &LayersSection {
+        self.unrolling.layers
     }
 
     /// A layer with its ends as they are welded, even, and unrolled once.

@@ -74,6 +74,7 @@ pub use parts::{parts_into, torch_of};
 pub use preview::preview;
 pub use result::{Collect, Header, Plan, PlanError, Sink, Summary};
 pub use scan_lines::{ToFill, raster_angle};
+pub(crate) use settings::PlanSettings;
 pub use turns::{Bands, drawn, is_jump, unrolled_once};
 
 use crate::deposit::Stack;
@@ -98,7 +99,6 @@ use milled::Milled;
 use planar::Bounds;
 use rayon::prelude::*;
 use reasons::{left_over, other_volume, why_empty};
-use settings::PlanSettings;
 use std::convert::Infallible;
 use support::{Footing, Support};
 use warm::{Heat, Warmth};

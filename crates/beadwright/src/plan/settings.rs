@@ -11,27 +11,32 @@ use super::slicing::Slicing;
 use super::support::Ground;
 use super::turns::Unrolling;
 use super::warm::Warming;
+use crate::bead::MassBalance;
+use crate::bead::pace::PaceSettings;
 use crate::bead::wall::{WallBead, WallError};
 use crate::fill::StrategyName;
 use crate::fill::around::Around;
 use crate::metrics::Metrics;
 use crate::model::wall_curves::CurvesAre;
-use crate::process::TorchShape;
+use crate::process::{Dot, TorchShape};
 use crate::profile::{CheckLimits, LayersSection, Profile};
-use crate::program::Turning;
+use crate::program::{ProgramSettings, Programmer, Turning};
 use crate::weld::WeldSettings;
 
-/// What a plan takes from a profile. Each stage takes its own settings from here; what runs several stages takes all.
+/// What planning and checking take from a profile. Each stage takes its own settings from here; what runs several stages
+/// takes all.
 #[derive(Debug, Clone)]
-pub(super) struct PlanSettings<'p> {
+pub(crate) struct PlanSettings<'p> {
     /// Name of the profile.
     pub(super) profile: &'p str,
     /// What fills the layers, unless a plan is made with another strategy.
     pub(super) strategy: StrategyName,
     /// Width of the nominal bead, mm.
-    pub(super) bead_width: f64,
+    pub(crate) bead_width: f64,
     /// How high the layers are, and how they lie in space.
-    pub(super) layers: &'p LayersSection,
+    pub(crate) layers: &'p LayersSection,
+    /// How layers that go around an axis are unrolled.
+    pub(crate) unrolling: Unrolling<'p>,
     /// How a part is cut into layers.
     pub(super) slicing: Slicing<'p>,
     /// What curves side by side stand for.
@@ -53,13 +58,13 @@ pub(super) struct PlanSettings<'p> {
     /// How the part warms up.
     pub(super) warming: Warming,
     /// How layers are welded, for the deposit model.
-    pub(super) welded: AsWelded<'p>,
+    pub(crate) welded: AsWelded<'p>,
     /// Arc, moves and times.
-    pub(super) weld: WeldSettings,
+    pub(crate) weld: WeldSettings,
     /// A pass that takes less time than this, s, ends before its arc is steady.
-    pub(super) soonest_arc_end: f64,
+    pub(crate) soonest_arc_end: f64,
     /// Limits beyond which a layer is doubtful.
-    pub(super) limits: &'p CheckLimits,
+    pub(crate) limits: &'p CheckLimits,
     /// The room that the torch takes, if known.
     pub(super) torch: Option<TorchShape>,
     /// The totals before any layer is counted.
@@ -67,17 +72,22 @@ pub(super) struct PlanSettings<'p> {
     /// What does not fit together in the profile, as sentences.
     pub(super) notes: Vec<String>,
     /// Why no program should be written with it, as sentences.
-    pub(super) forbidden: Vec<String>,
+    pub(crate) forbidden: Vec<String>,
+    /// How paths become moves of a program.
+    pub(crate) program: &'p ProgramSettings,
+    /// Balance of the wire fed and the nominal bead laid.
+    pub(crate) balance: MassBalance,
 }
 
 impl<'p> PlanSettings<'p> {
     /// The settings of a part, or of a body by its own profile.
-    pub(super) fn of(profile: &'p Profile) -> Self {
+    pub(crate) fn of(profile: &'p Profile) -> Self {
         Self {
             profile: &profile.name,
             strategy: profile.fill.strategy,
             bead_width: profile.bead.width,
             layers: &profile.layers,
+            unrolling: Unrolling::of(profile),
             slicing: Slicing::of(profile),
             curves: profile.wall.curves,
             wall: profile.wall_bead(),
@@ -96,7 +106,39 @@ impl<'p> PlanSettings<'p> {
             metrics: Metrics::new(profile),
             notes: profile.notes(),
             forbidden: profile.forbidden(),
+            program: &profile.program,
+            balance: profile.mass_balance(),
         }
+    }
+
+    /// Whether layers are as high as their metal.
+    pub(crate) fn is_level(&self) -> bool {
+        self.sharing.is_some()
+    }
+
+    /// Whether a printer lays the beads.
+    pub(crate) fn prints(&self) -> bool {
+        self.ground.prints
+    }
+
+    /// Shorter passes are left out, mm.
+    pub(crate) fn shortest_pass(&self) -> f64 {
+        self.filling.section.min_pass_length
+    }
+
+    /// What determines the pace of beads.
+    pub(crate) fn paces(&self) -> PaceSettings<'p> {
+        self.filling.laying.paces
+    }
+
+    /// The dot that the process lays, if it lays any.
+    pub(crate) fn dot(&self) -> Option<Dot> {
+        self.filling.laying.dot
+    }
+
+    /// Makes the instructions of layers, from the first one on.
+    pub(crate) fn programmer(&self) -> Programmer {
+        self.relighting.programmer.clone()
     }
 }
 

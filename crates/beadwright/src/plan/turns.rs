@@ -21,11 +21,11 @@ const NOTHING: f64 = 1e-6;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Unrolling<'p> {
     /// How layers lie in space.
-    pub(super) layers: &'p LayersSection,
+    pub(crate) layers: &'p LayersSection,
     /// Width of the nominal bead, mm.
-    pub(super) bead_width: f64,
+    pub(crate) bead_width: f64,
     /// How far beads may reach beyond the outline, mm.
-    pub(super) allowance: f64,
+    pub(crate) allowance: f64,
 }
 
 impl Unrolling<'_> {
