@@ -73,7 +73,7 @@ impl AsBuilt {
 /// # Errors
 /// [`DeviationError`], such as that there are no points where a plan has no bead.
 pub fn as_built(layers: &[Layer], profile: &Profile, part: &Mesh, task: &Task) -> Result<AsBuilt, DeviationError> {
-    let metal = Metal::of(layers, profile);
+    let metal = Metal::of(layers, AsWelded::of(profile));
     let (options, margin) = (profile.slice_options(), profile.bead.width);
     let grid = Grid::around(&[part.bounds(), metal.bounds()], margin, FINEST * options.layer_height);
     let inside = grid.inside(part, options, task)?;
@@ -178,9 +178,8 @@ impl Bead {
 }
 
 impl<'a> Metal<'a> {
-    fn of(layers: &'a [Layer], profile: &'a Profile) -> Self {
-        let as_welded = AsWelded::of(profile);
-        let courses = layers.iter().filter_map(|layer| Course::of(&as_welded.welded(layer), &profile.layers));
+    fn of(layers: &[Layer], as_welded: AsWelded<'a>) -> Self {
+        let courses = layers.iter().filter_map(|layer| Course::of(&as_welded.welded(layer), as_welded.layers()));
         let mut bodies: Vec<Body<'a>> = Vec::new();
         let mut of_body: Option<usize> = None;
         for (body, chart, course) in courses {

@@ -23,7 +23,7 @@ pub(crate) struct AsWelded<'p> {
     pub(super) fills_layers: bool,
 }
 
-impl AsWelded<'_> {
+impl<'p> AsWelded<'p> {
     /// A layer as its chart shows it; a wedge gets the metal of a layer of even thickness.
     pub(crate) fn even<'l>(&self, layer: &'l Layer) -> Cow<'l, Layer> {
         let Some(wedge) = self.unrolling.layers.wedge(layer) else { return Cow::Borrowed(layer) };
@@ -33,7 +33,7 @@ impl AsWelded<'_> {
     }
 
     /// How layers lie in space.
-    pub(crate) fn layers(&self) -> &LayersSection {
+    pub(crate) fn layers(&self) -> &'p LayersSection {
         self.unrolling.layers
     }
 
