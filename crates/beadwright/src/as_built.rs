@@ -11,8 +11,8 @@ use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::pass::Segment;
-use crate::plan;
-use crate::profile::Profile;
+use crate::plan::AsWelded;
+use crate::profile::{LayersSection, Profile};
 use crate::slice::{Slab, SliceOptions, Slicer};
 use crate::task::{Cancelled, Task};
 use glam::DVec3;
@@ -73,10 +73,11 @@ impl AsBuilt {
 /// # Errors
 /// [`DeviationError`], such as that there are no points where a plan has no bead.
 pub fn as_built(layers: &[Layer], profile: &Profile, part: &Mesh, task: &Task) -> Result<AsBuilt, DeviationError> {
-    let metal = Metal::of(layers, profile);
-    let grid = Grid::around(&[part.bounds(), metal.bounds()], profile);
-    let inside = grid.inside(part, profile.slice_options(), task)?;
-    let held = held(&grid, profile, part, task)?;
+    let metal = Metal::of(layers, AsWelded::of(profile));
+    let (options, margin) = (profile.slice_options(), profile.bead.width);
+    let grid = Grid::around(&[part.bounds(), metal.bounds()], margin, FINEST * options.layer_height);
+    let inside = grid.inside(part, options, task)?;
+    let held = held(&grid, &profile.layers, options, part, task)?;
     let built = grid.filled(|p| metal.contains(p), task)?;
     let voxels: Vec<Voxel> = inside
         .into_iter()
@@ -101,14 +102,19 @@ pub fn as_built(layers: &[Layer], profile: &Profile, part: &Mesh, task: &Task) -
 }
 
 /// Which voxels are to be welded.
-fn held(grid: &Grid, profile: &Profile, part: &Mesh, task: &Task) -> Result<Vec<bool>, Cancelled> {
-    let layers = &profile.layers;
+fn held(
+    grid: &Grid,
+    layers: &LayersSection,
+    options: SliceOptions,
+    part: &Mesh,
+    task: &Task,
+) -> Result<Vec<bool>, Cancelled> {
     if layers.bodies.iter().all(|body| body.solids.is_empty()) {
         return grid.filled(|p| layers.has(p), task);
     }
     let mut held = vec![false; grid.counts.iter().product()];
     for body in &layers.bodies {
-        let inside = grid.inside(&body.solids_of(part), profile.slice_options(), task)?;
+        let inside = grid.inside(&body.solids_of(part), options, task)?;
         let own = grid.filled(|p| body.has(p), task)?;
         held.iter_mut().zip(inside.into_iter().zip(own)).for_each(|(held, (inside, own))| *held |= inside && own);
     }
@@ -172,8 +178,8 @@ impl Bead {
 }
 
 impl<'a> Metal<'a> {
-    fn of(layers: &'a [Layer], profile: &'a Profile) -> Self {
-        let courses = layers.iter().filter_map(|layer| Course::of(layer, profile));
+    fn of(layers: &[Layer], as_welded: AsWelded<'a>) -> Self {
+        let courses = layers.iter().filter_map(|layer| Course::of(&as_welded.welded(layer), as_welded.layers()));
         let mut bodies: Vec<Body<'a>> = Vec::new();
         let mut of_body: Option<usize> = None;
         for (body, chart, course) in courses {
@@ -216,14 +222,13 @@ impl Body<'_> {
 
 impl<'a> Course<'a> {
     /// With its body and its chart; `None` for a layer without passes.
-    fn of(layer: &'a Layer, profile: &'a Profile) -> Option<(usize, &'a Chart, Self)> {
-        let welded = plan::welded(layer, profile);
+    fn of(welded: &Layer, layers: &'a LayersSection) -> Option<(usize, &'a Chart, Self)> {
         let heights = || welded.passes.iter().flat_map(|pass| &pass.points).map(|p| p.z);
-        let (low, high) = (heights().reduce(f64::min)? - layer.height, heights().reduce(f64::max)?);
+        let (low, high) = (heights().reduce(f64::min)? - welded.height, heights().reduce(f64::max)?);
         let beads = welded.passes.iter().flat_map(|pass| pass.segments()).map(Bead).collect();
-        let chart = profile.layers.chart_of(layer);
-        let sheet = chart.sheet(layer.middle());
-        Some((layer.body, chart, Self { sheet, low, high, height: layer.height, beads: RTree::bulk_load(beads) }))
+        let chart = layers.chart_of(welded);
+        let sheet = chart.sheet(welded.middle());
+        Some((welded.body, chart, Self { sheet, low, high, height: welded.height, beads: RTree::bulk_load(beads) }))
     }
 
     fn contains(&self, p: DVec3) -> bool {
@@ -249,12 +254,12 @@ struct Grid {
 }
 
 impl Grid {
-    /// A grid around some boxes, with a bead's margin.
-    fn around(boxes: &[(DVec3, DVec3)], profile: &Profile) -> Self {
-        let low = boxes.iter().fold(DVec3::INFINITY, |low, around| low.min(around.0)) - profile.bead.width;
-        let high = boxes.iter().fold(DVec3::NEG_INFINITY, |high, around| high.max(around.1)) + profile.bead.width;
+    /// A grid around some boxes, with a margin; a voxel is not smaller than `finest` (all mm).
+    fn around(boxes: &[(DVec3, DVec3)], margin: f64, finest: f64) -> Self {
+        let low = boxes.iter().fold(DVec3::INFINITY, |low, around| low.min(around.0)) - margin;
+        let high = boxes.iter().fold(DVec3::NEG_INFINITY, |high, around| high.max(around.1)) + margin;
         let size = high - low;
-        let step = (size.element_product() / VOXELS).cbrt().max(FINEST * profile.layers.height);
+        let step = (size.element_product() / VOXELS).cbrt().max(finest);
         let counts = size.to_array().map(|size| (size / step).ceil().max(1.0) as usize);
         // Faces of the part often lie on whole millimetres; this keeps the voxels' middles off them.
         Self { first: low + OFF * step, step, counts }

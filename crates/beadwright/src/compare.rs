@@ -7,7 +7,7 @@ use crate::layer::{self, Layer};
 use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::pass::{Pass, Segment};
-use crate::plan::{self, Header, PlanError, Sink};
+use crate::plan::{self, AsWelded, Header, PlanError, Sink};
 use crate::profile::Profile;
 use crate::report::encode;
 use crate::report::plot::{Curve, Plot};
@@ -129,7 +129,7 @@ impl<'a> EntryBuilder<'a> {
 /// Judges the layers of a plan as they are welded.
 struct Planned<'a> {
     entry: EntryBuilder<'a>,
-    profile: &'a Profile,
+    welded: AsWelded<'a>,
 }
 
 impl Sink for Planned<'_> {
@@ -140,7 +140,7 @@ impl Sink for Planned<'_> {
     }
 
     fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
-        self.entry.take(&plan::welded_alone(&layer, self.profile));
+        self.entry.take(&self.welded.alone(&layer));
         Ok(())
     }
 }
@@ -177,7 +177,8 @@ pub fn strategy(
 ) -> Result<Entry, PlanError<Infallible>> {
     let mut profile = profile.clone();
     profile.fill.strategy = name;
-    let mut planned = Planned { entry: EntryBuilder::new(settings, &bounds(mesh), chosen), profile: &profile };
+    let mut planned =
+        Planned { entry: EntryBuilder::new(settings, &bounds(mesh), chosen), welded: AsWelded::of(&profile) };
     let metrics = plan::plan_into(name.name(), mesh, &profile, task, &mut planned)?.metrics;
     let entry = planned.entry;
     let totals = Totals { turns: entry.turns, ..Totals::of_plan(&metrics) };

@@ -150,6 +150,11 @@ impl Metrics {
         }
     }
 
+    /// The same totals, whose times do not depend on how a positioner is turned.
+    pub(crate) fn unturned(self) -> Self {
+        Self { turns: Turns(None), ..self }
+    }
+
     /// Counts the next layer.
     ///
     /// ```

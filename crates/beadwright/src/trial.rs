@@ -12,8 +12,9 @@ use crate::metrics::Metrics;
 use crate::model::RepairReport;
 use crate::number::fixed;
 use crate::plan::{Header, Summary};
+use crate::process::Process;
 use crate::profile::Profile;
-use crate::program::LayerWeave;
+use crate::program::{LayerWeave, Weave};
 use crate::report::sheet::{Row, Sheet};
 use crate::warning::Warnings;
 use std::fmt::Write;
@@ -127,7 +128,7 @@ pub struct Learnt {
 /// [`FoundError`] if the profile's process lies outside what was tried.
 pub fn ends_learnt(found: &Found, profile: &Profile) -> Result<Learnt, FoundError> {
     let nominal = nominal(profile);
-    let best = found.best(|parameter| set(profile, parameter))?;
+    let best = found.best(|parameter| set(&profile.process, profile.weave.as_ref(), parameter))?;
     let mut ends = profile.start_stop.clone();
     let Learnt { mut lessons, mut notes } = Learnt::default();
     // What the trials have in common is a part of what was measured.
@@ -163,11 +164,10 @@ pub fn ends_learnt(found: &Found, profile: &Profile) -> Result<Learnt, FoundErro
 }
 
 /// The value that a profile has for what trials of ends and overlaps vary besides.
-fn set(profile: &Profile, parameter: Parameter) -> Option<f64> {
-    let weave = profile.weave.as_ref();
+fn set(process: &Process, weave: Option<&Weave>, parameter: Parameter) -> Option<f64> {
     match parameter {
-        Parameter::DepositionSpeed => Some(profile.process.deposition_speed),
-        Parameter::WireFeedSpeed => Some(profile.process.wire_feed_speed),
+        Parameter::DepositionSpeed => Some(process.deposition_speed),
+        Parameter::WireFeedSpeed => Some(process.wire_feed_speed),
         Parameter::WeaveLength => weave.map(|weave| weave.length),
         Parameter::WeaveAmplitude => weave.map(|weave| weave.amplitude),
         Parameter::WeaveDwell => weave.map(|weave| weave.dwell),
@@ -185,7 +185,7 @@ const VALLEY: f64 = 0.1;
 /// [`FoundError`] if the profile's process lies outside what was tried, or all valleys are deeper.
 pub fn stepover_learnt(found: &Found, profile: &Profile, deepest: Option<f64>) -> Result<Learnt, FoundError> {
     let deepest = deepest.unwrap_or(VALLEY * profile.bead.height);
-    let widest = found.widest(deepest, |parameter| set(profile, parameter))?;
+    let widest = found.widest(deepest, |parameter| set(&profile.process, profile.weave.as_ref(), parameter))?;
     let after = widest.stepover * profile.bead.width;
     let Estimate { value, plus_minus } = widest.valley;
     let mut notes = vec![format!(

@@ -2,7 +2,6 @@
 
 use super::{Check, Finding, Subject};
 use crate::pass::Segment;
-use crate::plan::Bands;
 use planar::{Join, Region};
 
 pub(super) const CHECK: Check = Check {
@@ -15,12 +14,12 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let width = subject.profile.bead.width;
-    let room = subject.profile.fill.machining_allowance + width / 2.0;
+    let width = subject.settings.bead_width;
+    let room = subject.settings.unrolling.allowance + width / 2.0;
     let mut findings = Vec::new();
     for layer in subject.layers.iter().filter(|l| !l.islands.is_empty()) {
         let near = Region::from_normalised(layer.islands.clone()).offset(room, Join::ROUND);
-        let bands = Bands::of_layer(layer, subject.profile);
+        let bands = subject.settings.unrolling.bands(layer);
         for (i, pass) in layer.passes.iter().enumerate() {
             let once = |s: Segment| bands.as_ref().map_or(s, |bands| bands.piece(s));
             let outside = |s: &Segment| s.from.is_finite() && outside(&near, s, width);

@@ -28,7 +28,7 @@ struct End {
 }
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let (near, most) = (NEAR * subject.profile.bead.width, LONGER * subject.profile.check.stacked_starts as usize);
+    let (near, most) = (NEAR * subject.settings.bead_width, LONGER * subject.settings.limits.stacked_starts as usize);
     let (mut below, mut findings): (Vec<End>, Vec<Finding>) = (Vec::new(), Vec::new());
     for layer in &subject.layers {
         let mut here = Vec::new();

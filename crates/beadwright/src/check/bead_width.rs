@@ -15,7 +15,7 @@ pub(super) const CHECK: Check = Check {
 const WINDOW: (f64, f64) = (0.5, 1.5);
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let width = subject.profile.bead.width;
+    let width = subject.settings.bead_width;
     let (low, high) = (WINDOW.0 * width, WINDOW.1 * width);
     let mut findings = Vec::new();
     for (layer, i, pass) in subject.passes() {

@@ -39,10 +39,10 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     );
     let worst = if built.hollow > built.peak { built.hollow_place } else { built.peak_place };
     let found = CHECK.of_layer(last, Some(worst.extend(last.z)), text).sized(built.hollow.max(built.peak));
-    let level = subject.profile.is_level();
+    let level = subject.settings.is_level();
     let remedy = level.then(|| "Measure the layers as they are built, and correct the rest.".to_owned());
-    let stick_out = subject.profile.process.ctwd;
-    let fails = !subject.profile.prints() && built.hollow.max(built.peak) > LOST * stick_out;
+    let stick_out = subject.settings.weld.process.ctwd;
+    let fails = !subject.settings.prints() && built.hollow.max(built.peak) > LOST * stick_out;
     let severity = if fails { Severity::Serious } else { found.severity };
     vec![Finding { severity, remedy: remedy.or(found.remedy.clone()), ..found }]
 }

@@ -12,5 +12,5 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    subject.profile.forbidden().into_iter().map(|reason| CHECK.of_plan(reason)).collect()
+    subject.settings.forbidden.iter().map(|reason| CHECK.of_plan(reason.clone())).collect()
 }

@@ -1,6 +1,7 @@
 //! Layers that follow each other hot.
 
 use super::{Check, Finding, Subject};
+use crate::plan::PlanSettings;
 
 pub(super) const CHECK: Check = Check {
     name: "cooling",
@@ -13,10 +14,10 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let (profile, limits) = (subject.profile, &subject.profile.check);
-    let waits = profile.start_stop.interpass_time > 0.0 || profile.start_stop.min_layer_time > 0.0;
+    let PlanSettings { weld, limits, .. } = subject.settings;
+    let waits = weld.ends.interpass_time > 0.0 || weld.ends.min_layer_time > 0.0;
     // Printers weld nothing; a separate limit says more.
-    if waits || profile.process.ctwd <= 0.0 || limits.min_layer_time.is_some() {
+    if waits || weld.process.ctwd <= 0.0 || limits.min_layer_time.is_some() {
         return Vec::new();
     }
     let (least, count) = (limits.cooling_time, subject.layers.len().saturating_sub(1));

@@ -4,7 +4,6 @@ use super::{Check, Finding, Subject};
 use crate::fill::sound;
 use crate::layer::Layer;
 use crate::pass::Pass;
-use crate::plan::Bands;
 use glam::DVec2;
 use std::borrow::Cow;
 
@@ -23,7 +22,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
 
 fn in_layer(layer: &Layer, subject: &Subject<'_>) -> Vec<Finding> {
     // Turns of one pass lie side by side.
-    let cut = Bands::of_layer(layer, subject.profile).map(|bands| bands.cut(&layer.passes));
+    let cut = subject.settings.unrolling.bands(layer).map(|bands| bands.cut(&layer.passes));
     let (passes, of) = cut.map_or((Cow::Borrowed(&layer.passes), None), |(passes, of)| (Cow::Owned(passes), Some(of)));
     let lines: Vec<Vec<DVec2>> = passes.iter().map(Pass::line).collect();
     let pass = |line: usize| of.as_ref().map_or(line, |of| of[line]);

@@ -17,11 +17,11 @@ pub(super) const CHECK: Check = Check {
 const IN_A_ROW: usize = 3;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let least = subject.profile.program.min_point_time;
+    let least = subject.settings.program.min_point_time;
     if least <= 0.0 {
         return Vec::new();
     }
-    let mut programmer = subject.profile.programmer();
+    let mut programmer = subject.settings.programmer();
     let sound = |layer: &&&crate::layer::Layer| layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
     let finding = |layer: &&crate::layer::Layer| {
         let times = seconds(&programmer.layer(layer).instructions);

@@ -1,6 +1,7 @@
 //! Heat over the limit.
 
 use super::{Check, Finding, Subject};
+use crate::plan::PlanSettings;
 use crate::process::Process;
 
 pub(super) const CHECK: Check = Check {
@@ -13,8 +14,8 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let (profile, limits) = (subject.profile, &subject.profile.check);
-    let process = &profile.process;
+    let PlanSettings { weld, limits, .. } = subject.settings;
+    let process = &weld.process;
     let over = |process: &Process, pace: f64| {
         process.heat_at(pace).zip(limits.max_heat_input).filter(|(heat, limit)| heat > limit)
     };
@@ -28,7 +29,7 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
     });
     let hot: Vec<Finding> = everywhere.clone().into_iter().chain(wide).collect();
     let least = limits.min_layer_time.unwrap_or(0.0);
-    let waits = &profile.start_stop;
+    let waits = &weld.ends;
     let time = |layer: &crate::layer::Layer| (subject.seconds(layer) + waits.interpass_time).max(waits.min_layer_time);
     let short = subject.layers.iter().filter(|layer| !layer.passes.is_empty() && time(layer) < least);
     let short = short.map(|layer| {

@@ -19,13 +19,15 @@ pub(super) const CHECK: Check = Check {
 const TOO_CLOSE: f64 = 0.5;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let (clearance, mut standing) = (subject.profile.travel.clearance, Standing::new(subject.profile.bead.width));
+    let (clearance, mut standing) =
+        (subject.settings.weld.travel.clearance, Standing::new(subject.settings.bead_width));
     let sound = |layer: &Layer| layer.passes.iter().flat_map(|p| &p.points).all(|p| p.is_finite());
     // Without clearance all travels are too low, which a separate check reports.
     if clearance <= 0.0 {
         return Vec::new();
     }
-    let (mut programmer, mut at, mut findings) = (subject.profile.programmer().unfitted().unplaced(), None, Vec::new());
+    let (mut programmer, mut at, mut findings) =
+        (subject.settings.programmer().unfitted().unplaced(), None, Vec::new());
     for layer in subject.layers.iter().copied().filter(|layer| sound(layer)) {
         let (mut pass, mut reported) = (0, false);
         for instruction in programmer.layer(layer).instructions {

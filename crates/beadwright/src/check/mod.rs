@@ -38,7 +38,7 @@ use crate::deposit::{DepositSettings, Figures, Judge, Judgement, Stack, stack::G
 use crate::finding::{Finding, Severity, as_sentence};
 use crate::layer::Layer;
 use crate::pass::PassKind;
-use crate::plan::{self, Summary};
+use crate::plan::{AsWelded, PlanSettings, Summary};
 use crate::profile::Profile;
 use crate::slice::Half;
 use crate::task::{Cancelled, Stage, Task};
@@ -118,10 +118,10 @@ pub struct Check {
 /// The plan to be checked, with what the deposit model says about it.
 pub struct Subject<'a> {
     layers: Vec<&'a Layer>,
-    profile: &'a Profile,
-    /// The layers of bodies welded earlier, and the profile of all bodies.
+    settings: &'a PlanSettings<'a>,
+    /// The layers of bodies welded earlier, and the settings of all bodies.
     earlier: &'a [&'a Layer],
-    whole: &'a Profile,
+    whole: &'a PlanSettings<'a>,
     /// What the deposit model says about each layer.
     figures: Vec<Figures>,
     /// How the part grows from layer to layer.
@@ -169,10 +169,11 @@ pub fn judge_layers<L: Borrow<Layer>>(
     task: &Task,
     mut each: impl FnMut(usize, Judgement),
 ) -> Result<LayerFigures, Cancelled> {
+    let welded = AsWelded::of(profile);
     let mut figures = Vec::with_capacity(layers.len());
     for (i, layer) in layers.iter().map(L::borrow).enumerate() {
         task.step(Stage::Deposit, i as f64 / layers.len() as f64)?;
-        let judgement = is_finite(layer).then(|| judge.layer(&plan::welded_alone(layer, profile)));
+        let judgement = is_finite(layer).then(|| judge.layer(&welded.alone(layer)));
         figures.push(judgement.as_ref().map_or(Figures::default(), |judgement| judgement.figures));
         judgement.into_iter().for_each(|judgement| each(i, judgement));
     }
@@ -191,7 +192,10 @@ pub fn grown<L: Borrow<Layer>>(
     task: &Task,
 ) -> Result<Grown, Cancelled> {
     let layers: Vec<&Layer> = layers.iter().map(L::borrow).collect();
-    let bodies = bodies(&layers).map(|body| body_grown(body, &profile.of_body(body[0].body), settings, task));
+    let bodies = bodies(&layers).map(|body| {
+        let own = profile.of_body(body[0].body);
+        body_grown(body, AsWelded::of(&own), settings, task)
+    });
     let bodies = bodies.collect::<Result<Vec<_>, _>>()?;
     let built: Vec<Option<Growth>> = bodies.iter().map(|(_, built)| *built).collect();
     Ok(Grown { layers: bodies.into_iter().flat_map(|(layers, _)| layers).collect(), built })
@@ -205,18 +209,18 @@ fn bodies<'a, 'l>(layers: &'a [&'l Layer]) -> impl Iterator<Item = &'a [&'l Laye
 /// How a body grows after each of its layers, and how it ends.
 fn body_grown(
     layers: &[&Layer],
-    profile: &Profile,
+    welded: AsWelded,
     settings: DepositSettings,
     task: &Task,
 ) -> Result<(Vec<Growth>, Option<Growth>), Cancelled> {
-    let stacks = !profile.layers.chart.goes_around();
+    let stacks = !welded.layers().chart.goes_around();
     let Some(bounds) = extent(layers).filter(|_| stacks) else {
         return Ok((vec![Growth::default(); layers.len()], None));
     };
     let mut stack = Stack::new(&bounds, settings);
     for layer in layers.iter().filter(|layer| is_finite(layer)) {
         task.check()?;
-        stack.add(&plan::welded(layer, profile));
+        stack.add(&welded.welded(layer));
     }
     Ok((stack.growth().to_vec(), stack.built()))
 }
@@ -263,16 +267,17 @@ pub fn check<L: Borrow<Layer>>(
 pub fn check_figures<L: Borrow<Layer>>(layers: &[L], profile: &Profile, judged: LayerFigures) -> Vec<Finding> {
     let LayerFigures { figures, grown: Grown { layers: growth, built }, .. } = judged;
     let layers: Vec<&Layer> = layers.iter().map(L::borrow).collect();
+    let whole = PlanSettings::of(profile);
     let (mut found, mut first) = (Vec::new(), 0);
     for (i, body) in bodies(&layers).enumerate() {
         let own = first..first + body.len();
         let part = |all: usize| own.start.min(all)..own.end.min(all);
-        let own_profile = &*profile.of_body(body[0].body);
+        let profile = profile.of_body(body[0].body);
         let subject = Subject {
             layers: body.to_vec(),
-            profile: own_profile,
+            settings: &PlanSettings::of(&profile),
             earlier: &layers[..first],
-            whole: profile,
+            whole: &whole,
             figures: figures[part(figures.len())].to_vec(),
             growth: growth[part(growth.len())].to_vec(),
             built: built.get(i).copied().flatten(),
@@ -388,7 +393,7 @@ impl Subject<'_> {
     /// A finding whose text says where it is: its place lies on the layer, the text gives it in space.
     fn located(&self, finding: Finding) -> Finding {
         let Some(layer) = finding.layer else { return finding };
-        let sheet = self.layers.iter().find(|l| l.index == layer).and_then(|l| self.profile.layers.sheet(l));
+        let sheet = self.layers.iter().find(|l| l.index == layer).and_then(|l| self.settings.layers.sheet(l));
         let place = finding.place.map(|p| sheet.map_or(p, |sheet| sheet.at(p).place));
         let pass = finding.pass.map_or_else(String::new, |pass| format!(", pass {}", pass + 1));
         let text = format!("layer {}{pass}{}: {}", layer + 1, at(place), finding.text);
@@ -410,7 +415,7 @@ impl Subject<'_> {
 
     /// Time for which the torch welds a layer, s.
     fn seconds(&self, layer: &Layer) -> f64 {
-        layer.passes.iter().map(|pass| pass.seconds(&self.profile.process)).sum()
+        layer.passes.iter().map(|pass| pass.seconds(&self.settings.weld.process)).sum()
     }
 
     /// A finding for each layer whose figure is above the limit; turns of a helix are not flat layers, so these figures say

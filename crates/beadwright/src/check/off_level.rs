@@ -18,8 +18,8 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let most = subject.profile.program.max_off_level;
-    let turned = subject.profile.program.positioner.is_some();
+    let most = subject.settings.program.max_off_level;
+    let turned = subject.settings.program.positioner.is_some();
     let leaning: Vec<Leaning<'_>> = if turned { as_turned(subject) } else { as_lying(subject) };
     let leaning: Vec<&Leaning<'_>> = leaning.iter().filter(|(lean, ..)| *lean > most).collect();
     let Some(&&(lean, place, layer, pass)) = leaning.iter().max_by(|a, b| a.0.total_cmp(&b.0)) else {
@@ -48,7 +48,7 @@ fn as_lying<'a>(subject: &'a Subject<'_>) -> Vec<Leaning<'a>> {
     let worst = |(layer, i, pass)| {
         let layer: &Layer = layer;
         let pass: &Pass = pass;
-        let sheet = subject.profile.layers.sheet(layer)?;
+        let sheet = subject.settings.layers.sheet(layer)?;
         let points = charted::followed(&pass.points, pass.closed, &sheet).into_iter().map(|(p, _)| p);
         let lean = |p: DVec3| (sheet.at(p).normal.angle_between(DVec3::Z).to_degrees(), p);
         let (lean, place) = points.filter(|p| p.is_finite()).map(lean).max_by(|a, b| a.0.total_cmp(&b.0))?;

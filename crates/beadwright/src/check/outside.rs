@@ -12,6 +12,6 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let limit = subject.profile.check.max_outside;
+    let limit = subject.settings.limits.max_outside;
     subject.above(&CHECK, |f| f.outside_percent(), limit, "of the area is laid outside the outline")
 }

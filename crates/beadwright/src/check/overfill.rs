@@ -12,6 +12,6 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let limit = subject.profile.check.max_overfill;
+    let limit = subject.settings.limits.max_overfill;
     subject.above(&CHECK, |f| f.overfill_percent(), limit, "of the area is laid too high")
 }

@@ -22,9 +22,9 @@ const TOPS: std::ops::Range<f64> = -0.75..2.0;
 const ACCURACY: f64 = 0.05;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let width = subject.profile.bead.width;
-    let reach = subject.profile.check.max_overhang * width;
-    let islands = |below: &Layer, layer: &Layer| match Across::layers(subject.profile, below, layer) {
+    let width = subject.settings.bead_width;
+    let reach = subject.settings.limits.max_overhang * width;
+    let islands = |below: &Layer, layer: &Layer| match Across::layers(&subject.settings.layers.chart, below, layer) {
         Some(across) => across.islands(&below.islands),
         None => below.islands.clone(),
     };
@@ -44,13 +44,13 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
 fn of_other_bodies(subject: &Subject<'_>, layer: &Layer) -> Region {
     let corner = layer.islands.first().and_then(|island| island.outer.points().first().copied());
     let Some(near) = corner.filter(|_| !subject.earlier.is_empty()) else { return Region::default() };
-    let sheet = subject.profile.layers.chart.sheet(layer.middle());
+    let sheet = subject.settings.layers.chart.sheet(layer.middle());
     let underside = layer.z - layer.height;
     let under = |p: DVec3| {
         let at = sheet.coordinates(p, near);
         TOPS.contains(&((at.z - underside) / layer.height)).then_some(at.truncate())
     };
-    let width = subject.profile.bead.width;
+    let width = subject.settings.bead_width;
     let mut lines: Vec<Vec<DVec2>> = Vec::new();
     for other in subject.earlier {
         let own = subject.whole.layers.sheet(other);

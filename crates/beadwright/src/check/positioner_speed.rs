@@ -17,7 +17,7 @@ pub(super) const CHECK: Check = Check {
 const MORE: f64 = 1.001;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let Some(positioner) = &subject.profile.program.positioner else { return Vec::new() };
+    let Some(positioner) = &subject.settings.program.positioner else { return Vec::new() };
     let moves = turned::moves(subject);
     let fast = moves.iter().filter_map(|turned| {
         let axes = positioner.axes.iter().zip(turned.rates).enumerate();

@@ -13,7 +13,7 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let (limits, sizes) = (&subject.profile.check, subject.layers.iter().map(|layer| (*layer, points(layer))));
+    let (limits, sizes) = (subject.settings.limits, subject.layers.iter().map(|layer| (*layer, points(layer))));
     let most = limits.max_points as usize;
     let large = sizes.clone().filter(|(_, size)| *size > most);
     let text = |count: usize| format!("it has {count} points; the limit for one layer is {most}.");

@@ -30,7 +30,8 @@ pub fn rehearse(profile: &Profile) -> Vec<(String, Fault)> {
 }
 
 fn faults(profile: &Profile, post: &str) -> Vec<Fault> {
-    let layers = [layer(profile, 0), layer(profile, 1)];
+    let bead = (profile.bead.width, profile.process.deposition_speed, profile.layers.height);
+    let layers = [0, 1].map(|index| layer(bead, index));
     let Ok(files) = dialect::write(post, &layers, &profile.job(PART)) else { return Vec::new() };
     let Some((main, text)) = main_file(&files) else { return Vec::new() };
     let mut find = |name: &str| {
@@ -50,9 +51,8 @@ fn main_file(files: &BTreeMap<String, String>) -> Option<(&str, &str)> {
     programs.min_by_key(|(file, _)| file.len()).map(|(file, text)| (file.as_str(), text.as_str()))
 }
 
-/// A circle, and a line along which the torch becomes slower.
-fn layer(profile: &Profile, index: usize) -> Layer {
-    let (width, pace, height) = (profile.bead.width, profile.process.deposition_speed, profile.layers.height);
+/// A circle, and a line along which the torch becomes slower, with beads of a width (mm), a pace (mm/s) and a height (mm).
+fn layer((width, pace, height): (f64, f64, f64), index: usize) -> Layer {
     let (z, radius) = (height * (index + 1) as f64, 10.0 * width);
     let around = |k: usize| radius * DVec2::from_angle(TAU * k as f64 / MOVES as f64);
     let circle = (0..MOVES).map(|k| around(k).extend(z)).collect();

@@ -28,7 +28,7 @@ const LENGTH: f64 = 1.0;
 type Sample = (DVec3, f64);
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let width = subject.profile.bead.width;
+    let width = subject.settings.bead_width;
     // The last turn of a helix ends on itself, where it has risen.
     let found = subject.passes().filter(|(layer, ..)| !layer.lit.is_turn()).filter_map(|(layer, i, pass)| {
         let (place, length) = retraced(&samples(pass, width / SAMPLES), width, pass.closed)?;

@@ -14,8 +14,8 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let soonest = subject.profile.soonest_arc_end();
-    let process = &subject.profile.process;
+    let soonest = subject.settings.soonest_arc_end;
+    let process = &subject.settings.weld.process;
     let time = |pass: &Pass| pass.seconds(process);
     let short = subject.beads().filter(|(_, _, pass)| pass.points.len() > 1 && time(pass) < 0.999 * soonest);
     let text = |time: f64| format!("it is over in {time:.2} s; its arc takes {soonest} s to start.");

@@ -13,7 +13,7 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let shortest = subject.profile.fill.min_pass_length;
+    let shortest = subject.settings.shortest_pass();
     let short = subject.beads().filter(|(_, _, pass)| pass.points.len() > 1 && pass.length() < 0.999 * shortest);
     let text = |length: f64| format!("it is {length:.1} mm long; the shortest that welds is {shortest} mm.");
     short.map(|(layer, i, pass)| CHECK.of_pass(layer, i, pass.start(), text(pass.length()))).collect()

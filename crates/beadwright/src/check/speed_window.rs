@@ -12,9 +12,9 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let process = &subject.profile.process;
+    let process = &subject.settings.weld.process;
     let nominal = process.deposition_speed;
-    let limits = &subject.profile.check;
+    let limits = subject.settings.limits;
     let (low, high) = (limits.min_speed.unwrap_or(0.25 * nominal), limits.max_speed.unwrap_or(4.0 * nominal));
     let mut findings = Vec::new();
     for (layer, i, pass) in subject.beads() {

@@ -18,14 +18,14 @@ pub(super) const CHECK: Check = Check {
 const NEAR: f64 = 0.5;
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let (width, most) = (subject.profile.bead.width, subject.profile.check.stacked_starts as usize);
+    let (width, most) = (subject.settings.bead_width, subject.settings.limits.stacked_starts as usize);
     // The starts of the layer below, each with the number of consecutive layers, down from there, that start at that
     // place.
     let mut below: Vec<(glam::DVec2, usize)> = Vec::new();
     let mut findings = Vec::new();
     let mut lower: Option<&Layer> = None;
     for &layer in &subject.layers {
-        if let Some(across) = lower.and_then(|lower| Across::layers(subject.profile, lower, layer)) {
+        if let Some(across) = lower.and_then(|lower| Across::layers(&subject.settings.layers.chart, lower, layer)) {
             below = below.iter().flat_map(|(p, count)| across.places(*p).map(move |p| (p, *count))).collect();
         }
         let mut here = Vec::with_capacity(layer.passes.len());

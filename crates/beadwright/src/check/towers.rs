@@ -12,7 +12,7 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let clearance = subject.profile.travel.clearance;
+    let clearance = subject.settings.weld.travel.clearance;
     let mut layers = subject.growth.iter().zip(&subject.layers);
     let Some((growth, layer)) = layers.find(|(growth, _)| clearance > 0.0 && growth.peak > clearance) else {
         return Vec::new();

@@ -28,7 +28,7 @@ pub(super) fn moves<'a>(subject: &'a Subject<'_>) -> Vec<Turned<'a>> {
     for layer in &subject.layers {
         let (mut at, mut pass, mut before) = (DVec3::ZERO, 0, None);
         let near = layer.passes.first().and_then(|pass| pass.start()).unwrap_or_default().truncate();
-        let sheet = subject.profile.layers.sheet(layer);
+        let sheet = subject.settings.layers.sheet(layer);
         let on_layer = |p: DVec3| sheet.map_or(p, |sheet| sheet.coordinates(p, near));
         for instruction in programmer.layer(layer).instructions {
             match instruction {

@@ -12,6 +12,6 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let limit = subject.profile.check.max_void;
+    let limit = subject.settings.limits.max_void;
     subject.above(&CHECK, |f| f.void_percent(), limit, "of the area stays empty")
 }

@@ -4,6 +4,7 @@ use super::{Check, Finding, Subject};
 use crate::bead::MassBalance;
 use crate::layer::Lit;
 use crate::pass::{PassKind, Segment};
+use crate::plan::PlanSettings;
 use crate::process::Follow;
 
 pub(super) const CHECK: Check = Check {
@@ -16,9 +17,8 @@ pub(super) const CHECK: Check = Check {
 };
 
 fn find(subject: &Subject<'_>) -> Vec<Finding> {
-    let profile = subject.profile;
-    let (process, balance) = (&profile.process, profile.mass_balance());
-    let (settings, dot) = (profile.pace_settings(), profile.dot());
+    let PlanSettings { layers, weld, balance, welded, .. } = subject.settings;
+    let (process, settings, dot) = (&weld.process, subject.settings.paces(), subject.settings.dot());
     let nominal = balance.warning().map(|text| CHECK.of_plan(text));
     let along = subject.passes().filter_map(|(layer, i, pass)| {
         let paces = settings.in_layer(subject.number_in_body(layer), layer.height);
@@ -30,9 +30,9 @@ fn find(subject: &Subject<'_>) -> Vec<Finding> {
         };
         // Where a helix begins and ends, it fills less than a layer.
         let most = if layer.lit.is_turn() { 1.0 / Lit::LEAST } else { 1.0 };
-        let wedge = profile.layers.wedge(layer);
+        let wedge = layers.wedge(layer);
         let thicker =
-            |s: &Segment| wedge.as_ref().map_or(1.0, |wedge| wedge.thicker(s, profile.usual_height(layer.height)));
+            |s: &Segment| wedge.as_ref().map_or(1.0, |wedge| wedge.thicker(s, welded.usual_height(layer.height)));
         let off = |s: &Segment| {
             let ratio = s.pace * thicker(s) / fitting(s.width);
             ratio < 1.0 - MassBalance::TOLERANCE || ratio > most * (1.0 + MassBalance::TOLERANCE)

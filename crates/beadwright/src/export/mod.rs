@@ -32,6 +32,8 @@ use crate::layer::Layer;
 use crate::pass::PassKind;
 use crate::plan::Header;
 use crate::profile::Profile;
+use crate::program::Tilt;
+use crate::weld::Torch;
 use glam::DVec3;
 
 /// What is exported: a plan and the profile it is welded with.
@@ -181,12 +183,17 @@ pub struct Piece {
 impl Beads<'_> {
     /// The pieces of all beads, in the order in which they are welded.
     pub fn pieces(&self) -> Vec<Piece> {
-        let mut pieces: Vec<Piece> =
-            walk::runs(self.layers, self.profile).into_iter().flat_map(|run| self.in_space(run)).collect();
+        let mut pieces: Vec<Piece> = self.runs().into_iter().flat_map(|run| self.in_space(run)).collect();
         for run in pieces.chunk_by_mut(|a, b| (a.layer, a.pass) == (b.layer, b.pass)) {
             self.warm(run);
         }
         pieces
+    }
+
+    /// All passes as they are welded, on their layers.
+    fn runs(&self) -> Vec<walk::Run<'_>> {
+        let Profile { program, layers, .. } = self.profile;
+        walk::runs(self.layers, Torch::of(&self.profile.weld_settings()), Tilt::new(program), layers)
     }
 
     /// The pieces of a pass in space.

@@ -4,7 +4,7 @@
 //! loses the outside gains, and the volume is the metal's exactly. Where the path turns by more than 90° a new body begins.
 //! Bodies of neighbouring beads overlap, as the formulas of single beads do; metal that fills craters has no shape here.
 
-use super::walk::{self, Run};
+use super::walk::Run;
 use super::{Beads, Piece};
 use crate::bead::Section;
 use crate::model::solid::Solid;
@@ -28,7 +28,7 @@ pub(super) struct Body {
 pub(super) fn bodies(beads: &Beads<'_>) -> Vec<Body> {
     let process = &beads.profile.process;
     let metal = beads.profile.bead().area() * process.deposition_speed;
-    let runs = walk::runs(beads.layers, beads.profile);
+    let runs = beads.runs();
     let in_space = |run: &Run<'_>| {
         let mut bodies = of_run(run, beads.profile.bead.section, metal);
         if let Some(sheet) = beads.profile.layers.sheet(run.layer) {

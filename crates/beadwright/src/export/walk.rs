@@ -5,7 +5,7 @@ use crate::chart::Sheet;
 use crate::layer::Layer;
 use crate::pass::Pass;
 use crate::plan::charted;
-use crate::profile::Profile;
+use crate::profile::LayersSection;
 use crate::program::Tilt;
 use crate::weld::{Torch, path};
 use glam::{DVec2, DVec3};
@@ -28,9 +28,10 @@ pub(super) struct Run<'a> {
     pub(super) travel: f64,
 }
 
-/// The passes of layers in the order in which they are welded.
-pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
-    let mut walk = Walk { torch: Torch::of(&profile.weld_settings()), tilt: Tilt::new(&profile.program), now: 0.0 };
+/// The passes of layers in the order in which they are welded, by a torch that `tilt` makes lean, if it does; `lie` says how
+/// the layers lie in space.
+pub(super) fn runs<'a>(layers: &'a [Layer], torch: Torch, tilt: Option<Tilt>, lie: &LayersSection) -> Vec<Run<'a>> {
+    let mut walk = Walk { torch, tilt, now: 0.0 };
     let mut found = Vec::new();
     // The way up belongs to the pass that ends, but is travelled before the next one.
     let mut travel = 0.0;
@@ -46,7 +47,7 @@ pub(super) fn runs<'a>(layers: &'a [Layer], profile: &Profile) -> Vec<Run<'a>> {
             travel += pauses().map(|pause| pause.moving).sum::<f64>() + walk.torch.approach(start).moving;
             let pause = pauses().map(|pause| pause.seconds).sum::<f64>();
             walk.now += travel + pause;
-            let run = walk.run(layer, number, pass, profile.layers.sheet(layer));
+            let run = walk.run(layer, number, pass, lie.sheet(layer));
             found.push(Run { travel, pause, ..run });
             travel = walk.torch.retract().moving;
         }

@@ -1,12 +1,12 @@
 //! Whether the torch has room next to finished bodies, in space: it points along the normal of the layer that it welds
 //! and fills a cone above the wire's tip ([`TorchShape`]).
 
+use super::settings::PlanSettings;
 use super::{Header, Sink};
 use crate::chart::At;
 use crate::layer::Layer;
 use crate::model::Mesh;
 use crate::process::TorchShape;
-use crate::profile::{Body, Profile};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -40,8 +40,8 @@ const STEP: f64 = 2.0;
 const WIRE: f64 = 1.5;
 
 impl Beside {
-    pub(super) fn new(profile: &Profile) -> Self {
-        Self { torch: profile.torch, finished: Vec::new(), close: Vec::new() }
+    pub(super) fn new(torch: Option<TorchShape>) -> Self {
+        Self { torch, finished: Vec::new(), close: Vec::new() }
     }
 
     /// Adds finished metal; `what` is its name in messages.
@@ -127,34 +127,35 @@ fn surface_points(mesh: &Mesh) -> Vec<DVec3> {
 pub(super) struct Watch<'a, S> {
     sink: &'a mut S,
     beside: &'a mut Beside,
-    body: &'a Body,
-    profile: &'a Profile,
+    /// Name of the body that is welded.
+    body: &'a str,
+    settings: &'a PlanSettings<'a>,
 }
 
 impl<'a, S> Watch<'a, S> {
-    /// `profile` is that of the body.
-    pub(super) fn new(sink: &'a mut S, beside: &'a mut Beside, body: &'a Body, profile: &'a Profile) -> Self {
-        Self { sink, beside, body, profile }
+    /// `settings` are those of the body.
+    pub(super) fn new(sink: &'a mut S, beside: &'a mut Beside, body: &'a str, settings: &'a PlanSettings<'a>) -> Self {
+        Self { sink, beside, body, settings }
     }
 
     fn watch(&mut self, layer: &Layer) {
         if self.beside.finished.is_empty() {
             return;
         }
-        let sheet = self.profile.layers.chart.sheet(layer.middle());
+        let sheet = self.settings.layers.chart.sheet(layer.middle());
         let spaced = |from: DVec3, to: DVec3| {
-            let count = (from.distance(to) / (STEP * self.profile.bead.width)).ceil().max(1.0) as usize;
+            let count = (from.distance(to) / (STEP * self.settings.bead_width)).ceil().max(1.0) as usize;
             (0..=count).map(move |k| from.lerp(to, k as f64 / count as f64))
         };
         let welded =
             layer.passes.iter().flat_map(|pass| pass.segments()).flat_map(|piece| spaced(piece.from, piece.to));
         let welded: Vec<At> = welded.map(|p| sheet.at(p)).collect();
         let ends = layer.passes.windows(2).filter_map(|pair| pair[0].end().zip(pair[1].start()));
-        let over = DVec3::Z * self.profile.travel.clearance;
+        let over = DVec3::Z * self.settings.weld.travel.clearance;
         let travelled: Vec<At> =
             ends.flat_map(|(from, to)| spaced(from + over, to + over)).map(|p| sheet.at(p)).collect();
-        self.beside.look(&self.body.name, &welded, false);
-        self.beside.look(&self.body.name, &travelled, true);
+        self.beside.look(self.body, &welded, false);
+        self.beside.look(self.body, &travelled, true);
     }
 }
 

@@ -4,6 +4,8 @@
 use super::beside::{Beside, Watch};
 use super::charted::{self, Unrolled};
 use super::row::{NUMBERED_APART, Row};
+use super::settings::PlanSettings;
+use super::slicing::Slicing;
 use super::support::{Footing, Under};
 use super::warm::{Heat, Warmth};
 use super::{Header, PlanError, Sink, Start, Summary, plan_at, slabs_of, warm};
@@ -20,7 +22,7 @@ use std::borrow::Cow;
 /// A body with what it takes to plan it.
 struct Own<'a> {
     body: &'a Body,
-    profile: Cow<'a, Profile>,
+    settings: PlanSettings<'a>,
     /// In space; around an axis and along a guide, including what lies below its first layer.
     mesh: Mesh,
 }
@@ -45,25 +47,28 @@ pub(super) fn bodies_into<S: Sink + Send>(
     }
     let whole = [Body::of(name, profile.layers.chart.clone())];
     let bodies = if profile.layers.bodies.is_empty() { &whole[..] } else { &profile.layers.bodies };
-    let bodies = bodies.iter().enumerate();
-    let owned: Vec<Own<'_>> =
-        bodies.map(|(k, body)| Own { body, profile: profile.of_body(k), mesh: body.of_mesh(mesh) }).collect();
+    let profiles: Vec<Cow<'_, Profile>> = (0..bodies.len()).map(|k| profile.of_body(k)).collect();
+    let owned = bodies.iter().zip(&profiles);
+    let owned: Vec<Own<'_>> = owned
+        .map(|(body, profile)| Own { body, settings: PlanSettings::of(profile), mesh: body.of_mesh(mesh) })
+        .collect();
     let ready = owned.iter().map(|own| Ready::of(own, task)).collect::<Result<Vec<_>, _>>()?;
     let bounds = ready.iter().map(|ready| ready.part().bounds()).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
     let (low, high) = bounds.unwrap_or_default();
     let extent = Extent { layers: ready.iter().map(|ready| ready.slabs.len()).sum(), low, high };
-    let strategy = profile.fill.strategy.to_string();
-    sink.begin(&Header { part: name.to_owned(), profile: profile.name.clone(), strategy, extent })
+    let whole = &PlanSettings::of(profile);
+    let strategy = whole.strategy.to_string();
+    sink.begin(&Header { part: name.to_owned(), profile: whole.profile.to_owned(), strategy, extent })
         .map_err(PlanError::Sink)?;
-    let (mut row, mut beside) = (Row::new(profile, sink, owned.len() > 1), Beside::new(profile));
+    let (mut row, mut beside) = (Row::new(whole, sink, owned.len() > 1), Beside::new(whole.torch));
     if let Some(base) = onto {
         beside.finish(BASE, base);
     }
     let placed = ready.iter().filter_map(|ready| match ready.part() {
-        PartRef::Mesh { mesh, .. } => Some((&ready.own.profile.layers.chart, mesh)),
+        PartRef::Mesh { mesh, .. } => Some((ready.own.settings.slicing.chart, mesh)),
         PartRef::Curves(..) => None,
     });
-    let mut heat = (owned.len() > 1 || !profile.layers.are_level()).then(|| Heat::of_bodies(profile, placed));
+    let mut heat = (owned.len() > 1 || !whole.layers.are_level()).then(|| Heat::of_bodies(&whole.warming, placed));
     for (k, (own, ready)) in owned.iter().zip(&ready).enumerate() {
         row.body = k;
         let under = owned[..k].iter().map(|other| &other.mesh).chain(onto);
@@ -73,7 +78,7 @@ pub(super) fn bodies_into<S: Sink + Send>(
         } else {
             ready.footing(under, task)?
         };
-        let mut watch = Watch::new(&mut row, &mut beside, own.body, &own.profile);
+        let mut watch = Watch::new(&mut row, &mut beside, &own.body.name, &own.settings);
         let start =
             Start { warmth: &ready.warmth, footing, heat: heat.as_mut().map(|heat| heat.before(k, &ready.warmth)) };
         let summary = ready.plan(start, task, &mut watch)?;
@@ -86,7 +91,8 @@ pub(super) fn bodies_into<S: Sink + Send>(
     summary.forbidden.extend(beside.sentences());
     let twice = welded_twice(mesh, &owned);
     // What lies below a body on stock is already there.
-    let counts = !profile.layers.bodies.is_empty() && !bodies_on_stock(profile) && twice.is_empty();
+    let bodies = &whole.layers.bodies;
+    let counts = !bodies.is_empty() && !bodies.iter().any(|body| body.on_stock) && twice.is_empty();
     if let Some(missing) = missing(mesh, summary.metrics.mesh_volume_mm3).filter(|_| counts) {
         // The likely reason why passes lie in the air.
         let hang = summary.warnings.summaries().any(|warning| IN_THE_AIR.contains(&warning.kind));
@@ -100,10 +106,6 @@ pub(super) fn bodies_into<S: Sink + Send>(
 /// Warnings of passes with nothing below.
 const IN_THE_AIR: [WarningKind; 4] =
     [WarningKind::InTheAir, WarningKind::OverUnwelded, WarningKind::NothingBelow, WarningKind::HighStart];
-
-fn bodies_on_stock(profile: &Profile) -> bool {
-    profile.layers.bodies.iter().any(|body| body.on_stock)
-}
 
 /// What messages call an existing part.
 const BASE: &str = "the part that is there already";
@@ -203,10 +205,10 @@ impl<'a> Ready<'a> {
         if own.mesh.triangles.is_empty() {
             return Err(own.wrong("nothing of the part belongs to it: look at its chart, within and solids."));
         }
-        let unrolled = Unrolled::of(own.part(), &own.profile, task).map_err(|error| own.named(error))?;
+        let unrolled = Unrolled::of(own.part(), &own.settings.slicing, task).map_err(|error| own.named(error))?;
         let mut ready = Self { own, unrolled, warmth: Warmth::default(), slabs: Vec::new() };
-        ready.warmth = warm::predicted(ready.part(), &own.profile, task)?;
-        ready.slabs = slabs_of(&ready.warmth, ready.part(), &own.profile, task)?;
+        ready.warmth = warm::predicted(ready.part(), &own.settings, task)?;
+        ready.slabs = slabs_of(&ready.warmth, ready.part(), &own.settings, task)?;
         Ok(ready)
     }
 
@@ -216,10 +218,10 @@ impl<'a> Ready<'a> {
 
     /// What its layers lie on, apart from one another.
     fn footing<'m, E>(&self, others: impl Iterator<Item = &'m Mesh>, task: &Task) -> Result<Footing, PlanError<E>> {
-        let Own { body, profile, .. } = self.own;
+        let Own { body, settings: PlanSettings { slicing, .. }, .. } = self.own;
         let mut metal: Vec<Under> = Vec::new();
         for mesh in others {
-            let of_mesh = under_layers(mesh, &self.slabs, profile, task)?;
+            let of_mesh = under_layers(mesh, &self.slabs, slicing, task)?;
             if metal.is_empty() {
                 metal = of_mesh;
             } else {
@@ -227,21 +229,25 @@ impl<'a> Ready<'a> {
                 more.for_each(|(under, more)| under.outlines.extend(more.outlines));
             }
         }
-        Ok(Footing { plate: body.on_stock || profile.layers.chart.is_level(), metal })
+        Ok(Footing { plate: body.on_stock || slicing.chart.is_level(), metal })
     }
 
     /// Refuses a body whose first layer lies on one that is welded after it.
     fn in_order<E>(&self, later: &[Own<'_>], task: &Task) -> Result<(), PlanError<E>> {
-        let (Own { body, profile, .. }, PartRef::Mesh { mesh, .. }) = (self.own, self.part()) else { return Ok(()) };
+        let (Own { body, settings: PlanSettings { slicing, .. }, .. }, PartRef::Mesh { mesh, .. }) =
+            (self.own, self.part())
+        else {
+            return Ok(());
+        };
         let begins = |slab: &&Slab| slab.z > mesh.bounds().0.z;
         let Some(first) = self.slabs.iter().find(begins).filter(|_| !body.on_stock) else { return Ok(()) };
-        let own = Slicer::of_slabs(mesh, vec![*first], profile.slice_options(), task)?.on(&profile.layers.chart);
-        let own: Vec<Polygon> = own.all(task)?.into_iter().flat_map(|slice| slice.islands).collect();
+        let own: Vec<Polygon> =
+            slicing.slicer(mesh, vec![*first], task)?.all(task)?.into_iter().flat_map(|slice| slice.islands).collect();
         let own = Region::from_normalised(own);
         // Around an axis and along a guide the mesh of a body includes what lies below its first layer.
         let whole = |other: &&Own<'_>| matches!(other.body.chart, Chart::Plane(_) | Chart::Surface(_));
         for other in later.iter().filter(whole) {
-            let under = under_layers(&other.mesh, &[*first], profile, task)?;
+            let under = under_layers(&other.mesh, &[*first], slicing, task)?;
             let outlines = under.into_iter().flat_map(|under| under.outlines).collect();
             if own.intersection(&Region::from_normalised(outlines)).area() > LIES_ON * own.area() {
                 let name = &other.body.name;
@@ -256,11 +262,15 @@ impl<'a> Ready<'a> {
 
     fn plan<S: Sink + Send>(&self, start: Start, task: &Task, sink: &mut S) -> Result<Summary, PlanError<S::Error>> {
         let (own, part) = (self.own, self.part());
-        let planned = plan_at(start, &own.body.name, part, &own.profile, task, sink);
+        let planned = plan_at(start, &own.body.name, part, &own.settings, task, sink);
         let mut summary = planned.map_err(|error| own.named(error))?;
-        summary.forbidden.extend(charted::too_narrow(part.bounds().1.z, &own.profile));
+        summary.forbidden.extend(charted::too_narrow(
+            part.bounds().1.z,
+            own.settings.slicing.chart,
+            &own.settings.weld,
+        ));
         if let PartRef::Mesh { mesh, .. } = part {
-            summary.notes.extend(charted::stretched(mesh, &own.profile.layers.chart));
+            summary.notes.extend(charted::stretched(mesh, own.settings.slicing.chart));
         }
         Ok(summary)
     }
@@ -276,8 +286,9 @@ const GAP: f64 = 0.25;
 const WEDGED: f64 = 0.55;
 
 /// The parts of a mesh that lie just under each layer.
-fn under_layers<E>(mesh: &Mesh, slabs: &[Slab], profile: &Profile, task: &Task) -> Result<Vec<Under>, PlanError<E>> {
-    let (chart, usual) = (&profile.layers.chart, profile.layers.height);
+fn under_layers<E>(mesh: &Mesh, slabs: &[Slab], slicing: &Slicing, task: &Task) -> Result<Vec<Under>, PlanError<E>> {
+    let Slicing { options, chart, .. } = *slicing;
+    let usual = options.layer_height;
     let lowered = chart.lowered(usual);
     let mesh = warp::unrolled(&lowered, mesh, charted::TOLERANCE, task)?;
     let gap = |k: usize, slab: &Slab| if k == 0 { GAP * usual } else { WEDGED * slab.height };
@@ -286,7 +297,7 @@ fn under_layers<E>(mesh: &Mesh, slabs: &[Slab], profile: &Profile, task: &Task) 
     // Slabs are cut at their middle height.
     let thin = GAP * usual;
     let thin = |(height, gap): &(f64, f64)| Slab { z: height + usual - gap + thin / 2.0, height: thin };
-    let slicer = Slicer::of_slabs(&mesh, cuts.iter().map(thin).collect(), profile.slice_options(), task)?;
+    let slicer = Slicer::of_slabs(&mesh, cuts.iter().map(thin).collect(), options, task)?;
     let under = slicer.on(&lowered).all(task)?.into_iter().zip(cuts).map(|(slice, (height, gap))| {
         let (here, there) = (chart.sheet(height), chart.sheet(height - gap));
         let outlines = slice.islands.iter().map(|island| island.moved(|p| here.across(p, &there))).collect();

@@ -1,6 +1,6 @@
 //! Fills an island that its strategy cannot fill: with the one of several strategies that the deposit model finds best.
 
-use super::{deposit_settings, emitter};
+use super::filled::Filling;
 use crate::deposit::Judge;
 use crate::fill::contour::Contour;
 use crate::fill::fermat::Fermat;
@@ -10,7 +10,6 @@ use crate::fill::one_loop::OneLoop;
 use crate::fill::spiral::Spiral;
 use crate::fill::{Fill, FillSettings, Strategy};
 use crate::layer::Layer;
-use crate::profile::Profile;
 use planar::Polygon;
 
 /// Strategies that are tried; the first of equally good ones is taken. Scan lines are not tried: they leave outlines
@@ -37,23 +36,23 @@ pub(super) fn simpler(
 pub(super) fn best(
     island: &Polygon,
     settings: &FillSettings,
-    profile: &Profile,
+    filling: &Filling,
     is_sound: impl Fn(&Fill) -> bool,
 ) -> Option<Fill> {
     let fills = TRIED.iter().filter_map(|strategy| {
         let fill = Some(strategy.fill(island, settings)).filter(&is_sound);
         fill.or_else(|| simpler(*strategy, island, settings, &is_sound))
     });
-    let rated = fills.map(|fill| (cost(&fill, island, settings, profile), fill));
+    let rated = fills.map(|fill| (cost(&fill, island, settings, filling), fill));
     rated.min_by(|(a, _), (b, _)| a.total_cmp(b)).map(|(_, fill)| fill)
 }
 
 /// Voids, low area, humps and metal outside, plus the area that arc starts count for, mm².
-fn cost(fill: &Fill, island: &Polygon, settings: &FillSettings, profile: &Profile) -> f64 {
-    let (z, height, index) = (profile.layers.height, profile.layers.height, settings.layer);
-    let passes = emitter::passes(vec![fill.clone()], index, (z, height), profile, &mut None);
+fn cost(fill: &Fill, island: &Polygon, settings: &FillSettings, filling: &Filling) -> f64 {
+    let (z, height, index) = (filling.height, filling.height, settings.layer);
+    let passes = filling.laying.passes(vec![fill.clone()], index, (z, height), &mut None);
     let starts = passes.len() as f64;
     let layer = Layer { index, z, height, islands: vec![island.clone()], passes, ..Layer::default() };
-    let figures = Judge::new(deposit_settings(profile)).without_patches().layer(&layer).figures;
+    let figures = Judge::new(filling.deposit).without_patches().layer(&layer).figures;
     figures.void + LOW * figures.low + figures.overfill + figures.outside + START * starts * settings.bead.width.powi(2)
 }

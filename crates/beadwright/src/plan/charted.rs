@@ -1,15 +1,16 @@
 //! Parts whose layers are not level: their mesh is planned in the coordinates of the profile's chart, in which layers
 //! are level.
 
-use super::{PlanError, stock};
+use super::PlanError;
+use super::slicing::Slicing;
 use crate::chart::warp::{self, WarpError};
 use crate::chart::{At, Chart, Cylinder, Sheet, Side};
 use crate::layer::Layer;
 use crate::model::{Mesh, PartRef};
 use crate::pass::{Along, Pass};
-use crate::profile::Profile;
 use crate::slice::Surface;
 use crate::task::Task;
+use crate::weld::WeldSettings;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
 use std::borrow::Cow;
@@ -21,8 +22,7 @@ pub(super) const TOLERANCE: f64 = 0.02;
 ///
 /// # Errors
 /// [`WarpError`].
-pub(crate) fn unrolled<'a>(mesh: &'a Mesh, profile: &Profile, task: &Task) -> Result<Cow<'a, Mesh>, WarpError> {
-    let chart = &profile.layers.chart;
+pub(crate) fn unrolled<'a>(mesh: &'a Mesh, chart: &Chart, task: &Task) -> Result<Cow<'a, Mesh>, WarpError> {
     Ok(if chart.is_level() { Cow::Borrowed(mesh) } else { Cow::Owned(warp::warped(chart, mesh, TOLERANCE, task)?) })
 }
 
@@ -33,8 +33,7 @@ const MISSING: f64 = 1e-3;
 
 /// What users should know about the chart of a part, as sentences. `placed` is the part as it stands on the table,
 /// `unrolled` the same part in the chart's coordinates.
-pub(super) fn notes(placed: &Mesh, unrolled: &Mesh, profile: &Profile) -> Vec<String> {
-    let chart = &profile.layers.chart;
+pub(super) fn notes(placed: &Mesh, unrolled: &Mesh, chart: &Chart) -> Vec<String> {
     let inside = matches!(chart, Chart::Cylinder(Cylinder { side: Side::Inner, .. })).then(|| {
         "The first move goes straight to the first layer inside the bore: bring the torch in along the axis before it starts, and out \
          after it ends."
@@ -97,9 +96,9 @@ fn below(placed: &Mesh, unrolled: &Mesh, chart: &Chart) -> Option<String> {
 
 /// Why the programs of a part inside a bore should not be started: the torch would travel across the axis into the far
 /// side.
-pub(super) fn too_narrow(top: f64, profile: &Profile) -> Option<String> {
-    let Chart::Cylinder(Cylinder { side: Side::Inner, radius, .. }) = profile.layers.chart else { return None };
-    let above = profile.travel.clearance + profile.start_stop.dwell_height;
+pub(super) fn too_narrow(top: f64, chart: &Chart, weld: &WeldSettings) -> Option<String> {
+    let Chart::Cylinder(Cylinder { side: Side::Inner, radius, .. }) = *chart else { return None };
+    let above = weld.travel.clearance + weld.ends.dwell_height;
     (top + above >= radius).then(|| {
         format!(
             "Inside a bore of {radius} mm radius there is no room for travels {above} mm above layers {top:.1} mm high \
@@ -116,17 +115,17 @@ pub(super) struct Unrolled<'a> {
 
 impl<'a> Unrolled<'a> {
     /// `None` for a part that is planned as it is.
-    pub(super) fn of<E>(part: PartRef<'a>, profile: &Profile, task: &Task) -> Result<Option<Self>, PlanError<E>> {
-        let chart = &profile.layers.chart;
+    pub(super) fn of<E>(part: PartRef<'a>, slicing: &Slicing, task: &Task) -> Result<Option<Self>, PlanError<E>> {
+        let chart = slicing.chart;
         if chart.is_level() {
             return Ok(None);
         }
         let PartRef::Mesh { mesh, milled, .. } = part else { return Err(PlanError::ChartOfCurves) };
-        stock::is_closed(mesh, profile).map_err(|open| match profile.slice.surface {
+        slicing.closed(mesh).map_err(|open| match slicing.surface {
             Some(Surface::Wall) => PlanError::ChartOfCurves,
             _ => open,
         })?;
-        let own = unrolled(mesh, profile, task)?;
+        let own = unrolled(mesh, chart, task)?;
         if own.triangles.is_empty() {
             return Err(PlanError::Empty(format!(
                 "all of the part lies below the first layer of {} (layers.chart); the part's coordinates are those in which it \
@@ -134,7 +133,7 @@ impl<'a> Unrolled<'a> {
                 chart.short()
             )));
         }
-        let milled = milled.map(|part| unrolled(part, profile, task)).transpose()?;
+        let milled = milled.map(|part| unrolled(part, chart, task)).transpose()?;
         Ok(Some(Self { mesh: own, milled }))
     }
 
@@ -164,8 +163,8 @@ impl<'a> Across<'a> {
     }
 
     /// From one layer to another; `None` where the two need no mapping.
-    pub(crate) fn layers(profile: &'a Profile, from: &Layer, to: &Layer) -> Option<Self> {
-        Self::new(&profile.layers.chart, from.middle(), to.middle())
+    pub(crate) fn layers(chart: &'a Chart, from: &Layer, to: &Layer) -> Option<Self> {
+        Self::new(chart, from.middle(), to.middle())
     }
 
     /// The place on the other layer, one turn before, at the same turn, and one turn later.

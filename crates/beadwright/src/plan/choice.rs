@@ -1,13 +1,15 @@
 //! Which strategy a part is planned with: the profile's, or `wall` where the part is nothing but walls for one bead.
 
 use super::charted;
+use super::settings::PlanSettings;
+use super::slicing::Slicing;
 use crate::chart::warp::WarpError;
 use crate::chart::{Chart, Plane};
 use crate::fill::wall::Wall;
 use crate::fill::{Path, Strategy, StrategyName, sound};
-use crate::model::{Mesh, NO_NEIGHBOUR, Part};
+use crate::model::{Mesh, Part};
 use crate::profile::{Predict, Profile};
-use crate::slice::{Slab, Slice, Slicer, Surface};
+use crate::slice::{Slab, Slice};
 use crate::task::{Cancelled, Task};
 use glam::DVec3;
 use planar::{Join, Polygon, Region};
@@ -45,15 +47,17 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
     }
     match part {
         Part::Curves { .. } => profile.fill.strategy = StrategyName::Wall,
-        Part::Mesh(import) if is_wall_surface(&import.mesh, &profile) => profile.fill.strategy = StrategyName::Wall,
+        Part::Mesh(import) if Slicing::of(&profile).is_wall(&import.mesh) => profile.fill.strategy = StrategyName::Wall,
         Part::Mesh(_) if kept => {}
         Part::Mesh(import) if !profile.layers.bodies.is_empty() => {
             let mut named = Vec::new();
             let unnamed = |k: &usize| profile.layers.bodies[*k].strategy.is_none();
             for k in (0..profile.layers.bodies.len()).filter(unnamed).collect::<Vec<_>>() {
-                let own = profile.of_body(k).into_owned();
+                let own = profile.of_body(k);
+                let mesh = profile.layers.bodies[k].of_mesh(&import.mesh);
+                let found = of_solid(&mesh, &PlanSettings::of(&own), task)?;
                 let body = &mut profile.layers.bodies[k];
-                if let Some((strategy, predict)) = of_solid(&body.of_mesh(&import.mesh), &own, task)? {
+                if let Some((strategy, predict)) = found {
                     (body.strategy, body.predict) = (Some(strategy), Some(predict));
                     named.push(body.name.clone());
                 }
@@ -67,7 +71,7 @@ pub fn choose(part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result
             }
         }
         Part::Mesh(import) => {
-            if let Some((strategy, predict)) = of_solid(&import.mesh, &profile, task)? {
+            if let Some((strategy, predict)) = of_solid(&import.mesh, &PlanSettings::of(&profile), task)? {
                 (profile.fill.strategy, profile.layers.predict) = (strategy, predict);
                 note = Some(format!("{ALL_WALLS}; if you ask for loop by name, it is kept."));
             }
@@ -99,27 +103,21 @@ const ON_TABLE: f64 = 1e-3;
 const ALL_WALLS: &str = "Strategy wall instead of loop: all of the part is walls for one bead";
 
 /// What fills a solid instead of `loop`, and when the heights of its layers are then predicted; `None` where it stays as it is.
-fn of_solid(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<(StrategyName, Predict)>, Cancelled> {
-    if profile.fill.strategy != StrategyName::Loop {
+fn of_solid(mesh: &Mesh, settings: &PlanSettings, task: &Task) -> Result<Option<(StrategyName, Predict)>, Cancelled> {
+    if settings.strategy != StrategyName::Loop {
         return Ok(None);
     }
-    let mesh = match charted::unrolled(mesh, profile, task) {
+    let mesh = match charted::unrolled(mesh, settings.slicing.chart, task) {
         Err(WarpError::Cancelled(cancelled)) => return Err(cancelled),
         // The plan reports the reason.
         Err(_) => return Ok(None),
         Ok(mesh) => mesh,
     };
-    let predict = |walls: Walls| match profile.layers.predict {
+    let predict = |walls: Walls| match settings.layers.predict {
         Predict::Auto if walls == Walls::Thick => Predict::Never,
         as_it_is => as_it_is,
     };
-    Ok(walls(&mesh, profile, task)?.map(|walls| (StrategyName::Wall, predict(walls))))
-}
-
-/// Whether a mesh is an open surface along which one bead is laid.
-pub(super) fn is_wall_surface(mesh: &Mesh, profile: &Profile) -> bool {
-    profile.slice.surface == Some(Surface::Wall)
-        && mesh.neighbours.iter().flatten().any(|&across| across == NO_NEIGHBOUR)
+    Ok(walls(&mesh, settings, task)?.map(|walls| (StrategyName::Wall, predict(walls))))
 }
 
 /// Walls for one bead.
@@ -133,13 +131,12 @@ enum Walls {
 
 /// The kind of walls, if one bead fits everywhere in a part, two hardly anywhere, and the part can be welded along the
 /// middle of its walls; `None` otherwise.
-fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, Cancelled> {
+fn walls(mesh: &Mesh, settings: &PlanSettings, task: &Task) -> Result<Option<Walls>, Cancelled> {
     let (low, high) = mesh.bounds();
     let height = (high.z - low.z) / HEIGHTS as f64;
     let slabs = (1..=HEIGHTS).map(|k| Slab { z: low.z + k as f64 * height, height }).collect();
-    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?.on(&profile.layers.chart);
-    let settings = profile.fill_settings(0);
-    let slices = slicer.all(task)?;
+    let slices = settings.slicing.slicer(mesh, slabs, task)?.all(task)?;
+    let settings = settings.filling.first;
     let all: f64 = slices.iter().map(Slice::area).sum();
     // Area in which a bead of this width fits.
     let holding = |width: f64| -> f64 {
@@ -164,6 +161,6 @@ fn walls(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<Walls>, C
             return Ok(None);
         }
     }
-    let thick = holding(THICKER * profile.bead.width) > MOSTLY * all;
+    let thick = holding(THICKER * settings.bead.width) > MOSTLY * all;
     Ok(Some(if thick { Walls::Thick } else { Walls::Thin }))
 }

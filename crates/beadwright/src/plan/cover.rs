@@ -1,10 +1,9 @@
 //! How much of a slice beads cover, and which bare areas matter.
 
 use crate::fill::coverage::Coverage;
-use crate::fill::{Fill, Path};
+use crate::fill::{Fill, FillSettings, Path};
 use crate::layer::Layer;
 use crate::pass::Pass;
-use crate::profile::Profile;
 use crate::warning::WarningKind;
 use glam::DVec2;
 use planar::{Join, Polygon, Region};
@@ -26,16 +25,16 @@ const WELDED: f64 = 0.5;
 
 impl Cover {
     /// What the paths of an island cover.
-    pub(super) fn of(fill: &Fill, island: &Polygon, profile: &Profile, reach: &Reach) -> Self {
+    pub(super) fn of(fill: &Fill, island: &Polygon, settings: &FillSettings, reach: &Reach) -> Self {
         let paths: Vec<&Path> = fill.stages.iter().flatten().collect();
-        let is_sparse = profile.fill.infill_density < 1.0 && !paths.is_empty();
+        let is_sparse = settings.infill_density < 1.0 && !paths.is_empty();
         if is_sparse && reach.lost.is_empty() {
             return Self { area: reach.area, doubts: Vec::new() };
         }
-        let Some(coverage) = Coverage::of(&paths, &island.clone().into(), profile.bead.width) else {
+        let Some(coverage) = Coverage::of(&paths, &island.clone().into(), settings.bead.width) else {
             return Self::default();
         };
-        let mut own = Self::of_island(&coverage, coverage.bare().area, island, profile, reach);
+        let mut own = Self::of_island(&coverage, coverage.bare().area, island, settings.bead.width, reach);
         if is_sparse {
             // Left bare on purpose.
             own.area = reach.area;
@@ -44,24 +43,25 @@ impl Cover {
         own
     }
 
-    /// What the passes of a layer cover of its islands, for those whose `reaches` are known.
-    pub(super) fn of_layer(layer: &Layer, reaches: &[Option<Reach>], profile: &Profile) -> Self {
+    /// What the passes of a layer cover of its islands, for those whose `reaches` are known; `width` (mm) is that of the
+    /// nominal bead.
+    pub(super) fn of_layer(layer: &Layer, reaches: &[Option<Reach>], width: f64) -> Self {
         let paths: Vec<Path> = layer.passes.iter().map(path).collect();
         let (paths, whole) = (paths.iter().collect::<Vec<_>>(), Region::from_normalised(layer.islands.clone()));
-        let Some(coverage) = Coverage::of(&paths, &whole, profile.bead.width) else { return Self::default() };
+        let Some(coverage) = Coverage::of(&paths, &whole, width) else { return Self::default() };
         let mut all = Self::default();
         for (island, reach) in layer.islands.iter().zip(reaches) {
             let Some(reach) = reach else { continue };
             let bare = coverage.bare_of(&island.clone().into()).area;
-            let own = Self::of_island(&coverage, bare, island, profile, reach);
+            let own = Self::of_island(&coverage, bare, island, width, reach);
             all.area += own.area;
             all.doubts.extend(own.doubts);
         }
         all
     }
 
-    fn of_island(coverage: &Coverage, bare: f64, island: &Polygon, profile: &Profile, reach: &Reach) -> Self {
-        let (area, width) = (island.area(), profile.bead.width);
+    fn of_island(coverage: &Coverage, bare: f64, island: &Polygon, width: f64, reach: &Reach) -> Self {
+        let area = island.area();
         let mut unreached = (area - reach.area).max(0.0);
         let mut doubts = Vec::new();
         for piece in reach.thin_places() {

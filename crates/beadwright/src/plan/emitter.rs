@@ -6,18 +6,19 @@ use super::cover::{Cover, Reach};
 use super::filled::Filled;
 use super::helix::{Helix, NoTurn};
 use super::milled::undersize;
+use super::settings::PlanSettings;
 use super::support::Support;
-use super::turns::Bands;
 use super::warm::{self, Heat};
-use super::{Sink, level_layers, relight, welded};
+use super::{Sink, level_layers, relight};
+use crate::bead::pace::PaceSettings;
 use crate::deposit::Stack;
 use crate::fill::{Fill, Path};
 use crate::heat::{LONGEST_WAIT, NOISE, PassHeat};
 use crate::layer::{Layer, Temperature, overhang};
 use crate::metrics::Metrics;
-use crate::order;
+use crate::order::{self, OrderSettings};
 use crate::pass::{Pass, PassKind};
-use crate::profile::Profile;
+use crate::process::Dot;
 use crate::slice::{Half, Slice};
 use crate::warning::{Warning, WarningKind, Warnings};
 use crate::wedge::Wedge;
@@ -25,9 +26,52 @@ use glam::DVec2;
 use planar::{Polygon, Region};
 use std::borrow::Cow;
 
+/// How paths become passes: their order and their pace.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Laying<'p> {
+    /// How the first layer is put in order.
+    pub(super) order: OrderSettings,
+    pub(super) paces: PaceSettings<'p>,
+    /// The dot that the process lays, if it lays any.
+    pub(super) dot: Option<Dot>,
+}
+
+impl Laying<'_> {
+    /// How a layer is put in order.
+    fn in_order(&self, layer: usize) -> OrderSettings {
+        OrderSettings { layer, ..self.order }
+    }
+
+    /// The passes of a layer, in order and at their height, from its top and thickness, mm.
+    pub(super) fn passes(
+        &self,
+        fills: Vec<Fill>,
+        layer: usize,
+        heights: (f64, f64),
+        torch: &mut Option<DVec2>,
+    ) -> Vec<Pass> {
+        self.lifted(order::order(fills, &self.in_order(layer), torch), layer, heights)
+    }
+
+    /// Paths at the height of their layer; its top and its thickness, mm.
+    pub(super) fn lifted(&self, paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64)) -> Vec<Pass> {
+        let paces = self.paces.in_layer(layer, thickness);
+        let lift = |path: Path| Pass {
+            kind: path.kind,
+            closed: path.closed,
+            points: path.points.into_iter().map(|p| p.extend(top)).collect(),
+            // The wire feed stays the same: a wider bead is laid more slowly.
+            pace: path.width.map(|width| path.kind.pace(&paces, self.dot, width)),
+            width: path.width,
+            wait: 0.0,
+        };
+        paths.into_iter().map(lift).collect()
+    }
+}
+
 /// Puts filled layers in order and hands them over.
 pub(super) struct Emitter<'a, S> {
-    pub(super) profile: &'a Profile,
+    pub(super) settings: &'a PlanSettings<'a>,
     pub(super) sink: &'a mut S,
     /// Middle of the part seen from above, and so of its plate, mm.
     pub(super) middle: DVec2,
@@ -70,28 +114,30 @@ impl<S: Sink> Emitter<'_, S> {
         if islands.is_empty() {
             warnings.push(Warning { kind: WarningKind::EmptyLayer, layer: index, place: DVec2::ZERO, size: 0.0 });
         }
-        let order = self.profile.order_settings(index).around(self.middle);
+        let settings = self.settings;
+        let laying = &settings.filling.laying;
+        let order = laying.in_order(index).around(self.middle);
         let paths = self.memory.order(fills, shared, &order, &mut self.torch);
-        let passes = lifted(paths, index, (z, height / self.heat.lift(index, z - height)), self.profile);
+        let passes = laying.lifted(paths, index, (z, height / self.heat.lift(index, z - height)));
         let mut layer =
             Layer { index, z, height, half, islands, passes, slice_area, planned_area, warnings, ..Layer::default() };
         if half == Some(Half::Upper) {
             self.below.append(&mut self.before);
         }
-        let wedge = self.profile.layers.wedge(&layer);
+        let wedge = settings.layers.wedge(&layer);
         if let Some(wedge) = &wedge {
-            wedge.paired(&mut layer.passes, self.profile.usual_height(height));
+            wedge.paired(&mut layer.passes, settings.welded.usual_height(height));
             layer.warnings.extend(wedge.doubt(&layer));
         }
         self.share(&mut layer, &reaches, wedge.as_ref());
-        let undersize = milled.and_then(|part| undersize(&layer, &part, self.profile));
+        let undersize = milled.and_then(|part| undersize(&layer, &part, settings.bead_width));
         layer.warnings.extend(undersize);
         if let Some(helix) = &mut self.helix {
-            let turn = helix.turn(&mut layer, self.profile.bead.width);
+            let turn = helix.turn(&mut layer, settings.bead_width);
             self.no_turn = self.no_turn.take().or(turn.err());
         }
-        relight::relight(&mut layer, self.profile);
-        self.support.judge(&mut layer, self.profile);
+        relight::relight(&mut layer, &settings.relighting);
+        self.support.judge(&mut layer, &settings.ground);
         if let Some(wedge) = &wedge {
             wedge.laid(&mut layer.passes);
         }
@@ -100,31 +146,31 @@ impl<S: Sink> Emitter<'_, S> {
         let laid = laid.into_iter().filter(|island| !self.support.is_left_out(island)).collect();
         self.before = std::mem::replace(&mut self.below, laid);
         self.below_middle = layer.middle();
-        let sheet = self.profile.layers.sheet(&layer);
+        let sheet = settings.layers.sheet(&layer);
         for warning in &layer.warnings {
             let at = sheet.map(|sheet| sheet.at(warning.place.extend(layer.z)).place);
             self.warnings.add_at(*warning, layer.z, at);
         }
         self.metrics.add(&layer);
         if let Some(grown) = &mut self.grown {
-            grown.weld(&welded(&layer, self.profile).passes);
+            grown.weld(&settings.welded.welded(&layer).passes);
         }
         self.sink.layer(layer)
     }
 
     /// Shares out the metal of a level layer, and measures what it covers of the islands whose `reaches` are known.
     fn share(&self, layer: &mut Layer, reaches: &[Option<Reach>], wedge: Option<&Wedge<'_>>) {
-        let bands = Bands::of_layer(layer, self.profile);
+        let bands = self.settings.unrolling.bands(layer);
         let of = bands.as_ref().map(|bands| {
             let (pieces, of) = bands.cut(&layer.passes);
             layer.passes = pieces;
             of
         });
-        if self.profile.is_level() {
-            level_layers::share(layer, self.grown.as_ref(), wedge, self.profile);
+        if let Some(sharing) = &self.settings.sharing {
+            level_layers::share(layer, self.grown.as_ref(), wedge, sharing);
         }
         if !reaches.is_empty() {
-            let cover = Cover::of_layer(layer, reaches, self.profile);
+            let cover = Cover::of_layer(layer, reaches, self.settings.bead_width);
             layer.planned_area = cover.area;
             let warning = |(kind, place, size)| Warning { kind, layer: layer.index, place, size };
             layer.warnings.extend(cover.doubts.into_iter().map(warning));
@@ -152,11 +198,11 @@ impl<S: Sink> Emitter<'_, S> {
         self.torch = layer.passes.last().and_then(Pass::end).map(|end| end.truncate()).or(self.torch);
         let temperature = |pass: &PassHeat| Temperature { start: pass.start, mean: pass.mean() };
         layer.temperatures = heat.passes.iter().map(temperature).collect();
-        let bead = &self.profile.bead;
-        if let Some(law) = &bead.by_heat {
-            warm::widen(layer, &heat, build, law, bead.width);
+        let warming = &self.settings.warming;
+        if let Some(law) = &warming.by_heat {
+            warm::widen(layer, &heat, build, law, self.settings.bead_width);
         }
-        let Some(limits) = self.profile.interpass else { return };
+        let Some(limits) = warming.interpass else { return };
         for (pass, heat) in layer.passes.iter().zip(&heat.passes) {
             let (place, peak) = heat.peak();
             // Otherwise the start is too hot even after waiting, which is another warning. A helix cannot wait between
@@ -180,11 +226,11 @@ impl<S: Sink> Emitter<'_, S> {
 
     /// Warns of metal that a layer cannot be welded on, and of what a controller may refuse.
     fn doubts(&mut self, layer: &mut Layer) {
-        let (profile, index) = (self.profile, layer.index);
-        let limits = &profile.check;
-        let across = Across::new(&profile.layers.chart, self.below_middle, layer.middle());
+        let PlanSettings { limits, layers, weld, soonest_arc_end, .. } = self.settings;
+        let index = layer.index;
+        let across = Across::new(&layers.chart, self.below_middle, layer.middle());
         let mut below = across.map_or(Cow::Borrowed(&self.below[..]), |across| across.islands(&self.below).into());
-        let there = self.support.there(layer, profile);
+        let there = self.support.there(layer, &layers.chart);
         let stands =
             |pass: &Pass| pass.start().is_some_and(|p| there.iter().any(|island| island.contains(p.truncate())));
         if !there.is_empty() {
@@ -203,7 +249,7 @@ impl<S: Sink> Emitter<'_, S> {
                     .warnings
                     .retain(|warning| !matches!(warning.kind, WarningKind::InTheAir | WarningKind::OverUnwelded));
             } else if !below.is_empty() {
-                let (reach, width) = (limits.max_overhang * profile.bead.width, profile.bead.width);
+                let (reach, width) = (limits.max_overhang * self.settings.bead_width, self.settings.bead_width);
                 if let Some((area, place)) = overhang(&below, &layer.islands, reach, width) {
                     doubt(WarningKind::Overhang, place, area);
                 }
@@ -215,40 +261,14 @@ impl<S: Sink> Emitter<'_, S> {
         if points > limits.max_points as usize {
             doubt(WarningKind::ManyPoints, DVec2::ZERO, points as f64);
         }
-        let soonest = profile.soonest_arc_end();
         // Dots take the time that their trial took, however short.
-        let unsteady = |pass: &&Pass| pass.kind != PassKind::Spot && pass.seconds(&profile.process) < 0.999 * soonest;
+        let unsteady =
+            |pass: &&Pass| pass.kind != PassKind::Spot && pass.seconds(&weld.process) < 0.999 * soonest_arc_end;
         for pass in layer.passes.iter().filter(unsteady) {
             doubt(WarningKind::ShortArc, pass.start().unwrap_or_default().truncate(), pass.length());
         }
         layer.warnings.extend(doubts);
     }
-}
-
-/// The passes of a layer, in order and at their height, from its top and thickness, mm.
-pub(super) fn passes(
-    fills: Vec<Fill>,
-    layer: usize,
-    heights: (f64, f64),
-    profile: &Profile,
-    torch: &mut Option<DVec2>,
-) -> Vec<Pass> {
-    lifted(order::order(fills, &profile.order_settings(layer), torch), layer, heights, profile)
-}
-
-/// Paths at the height of their layer; its top and its thickness, mm.
-pub(super) fn lifted(paths: Vec<Path>, layer: usize, (top, thickness): (f64, f64), profile: &Profile) -> Vec<Pass> {
-    let (paces, dot) = (profile.pace_settings().in_layer(layer, thickness), profile.dot());
-    let lift = |path: Path| Pass {
-        kind: path.kind,
-        closed: path.closed,
-        points: path.points.into_iter().map(|p| p.extend(top)).collect(),
-        // The wire feed stays the same: a wider bead is laid more slowly.
-        pace: path.width.map(|width| path.kind.pace(&paces, dot, width)),
-        width: path.width,
-        wait: 0.0,
-    };
-    paths.into_iter().map(lift).collect()
 }
 
 /// The place at a distance `way` along a pass, mm, seen from above.

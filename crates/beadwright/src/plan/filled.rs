@@ -2,14 +2,17 @@
 
 use super::candidates;
 use super::cover::{Cover, Reach};
+use super::emitter::Laying;
 use super::scan_lines::Planned;
-use super::turns;
-use crate::fill::around;
+use super::turns::Unrolling;
+use crate::deposit::DepositSettings;
+use crate::fill::around::{self, Turn};
 use crate::fill::contour::rings_only;
 use crate::fill::sound::{self, Fault};
 use crate::fill::{Fill, FillSettings, Path, Strategy, dot};
-use crate::process::Dot;
-use crate::profile::Profile;
+use crate::metrics::Metrics;
+use crate::process::{Dot, Process};
+use crate::profile::FillSection;
 use crate::slice::Slice;
 use crate::task::{Cancelled, Task};
 use crate::warning::{Warning, WarningKind};
@@ -17,6 +20,100 @@ use glam::DVec2;
 use planar::{Bounds, Join, Polygon, Region};
 use rayon::prelude::*;
 use std::cell::OnceCell;
+
+/// How islands are filled.
+#[derive(Debug, Clone)]
+pub(super) struct Filling<'p> {
+    /// How the first layer is filled.
+    pub(super) first: FillSettings<'p>,
+    /// How that changes from layer to layer, and what is too short.
+    pub(super) section: &'p FillSection,
+    pub(super) unrolling: Unrolling<'p>,
+    /// The most turns of a helix around an axis; `None` where islands that go all around are cut open.
+    pub(super) most_turns: Option<f64>,
+    /// How passes are laid, where that decides between fills.
+    pub(super) laying: Laying<'p>,
+    pub(super) process: &'p Process,
+    /// A pass that takes less time than this, s, ends before its arc is steady.
+    pub(super) soonest_arc_end: f64,
+    /// Whether metal is shared out over the passes afterwards, so that only then it is known what they cover.
+    pub(super) is_level: bool,
+    /// Height of a usual layer, mm.
+    pub(super) height: f64,
+    /// How fills are judged, and timed without turns of a positioner, where several are tried.
+    pub(super) deposit: DepositSettings,
+    pub(super) still: Metrics,
+}
+
+impl<'p> Filling<'p> {
+    /// How a layer is filled, by its index.
+    pub(super) fn in_layer(&self, layer: usize) -> FillSettings<'p> {
+        FillSettings { layer, raster_angle: self.section.angle(layer), ..self.first }
+    }
+
+    /// The turns that a slice allows, if islands that go all around are filled with a helix.
+    pub(super) fn turn(&self, slice: &Slice) -> Option<Turn> {
+        self.most_turns.and_then(|most| self.unrolling.turn(slice, most))
+    }
+
+    /// How a slice is filled.
+    fn of_slice<'s>(&self, layer: &'s Planned) -> FillSettings<'s>
+    where
+        'p: 's,
+    {
+        let mut settings: FillSettings<'s> = self.in_layer(layer.slice.index);
+        settings.raster_angle = layer.raster_angle.unwrap_or(settings.raster_angle);
+        settings.solid = layer.solid.as_ref();
+        settings.turn = self.turn(&layer.slice);
+        settings
+    }
+
+    /// Whether a pass is long enough to be welded, and takes longer than its arc needs to become steady.
+    fn is_long_enough(&self, pass: &Path, layer: usize) -> bool {
+        let is_long = pass.points.len() >= 2 && pass.length() >= self.section.min_pass_length;
+        is_long && self.arc_time(pass, layer) >= self.soonest_arc_end
+    }
+
+    /// How long the torch takes along a pass, s.
+    fn arc_time(&self, pass: &Path, layer: usize) -> f64 {
+        let process = self.process.at_layer(layer);
+        let (FillSettings { bead, law, .. }, nominal) = (self.first, self.process.deposition_speed);
+        let path = pass.path();
+        let time = |(i, ends): (usize, &[DVec2])| {
+            let pace = nominal * law.pace(&bead, pass.width.after(i));
+            ends[0].distance(ends[1]) / process.speed_at(pace)
+        };
+        path.windows(2).enumerate().map(time).sum()
+    }
+
+    /// The longest pass of an island whose passes are all shorter than `fill.min_pass_length`, if it can be welded at
+    /// all: the layers above need its metal.
+    fn short_but_alone(&self, fill: &Fill, layer: usize) -> Option<Path> {
+        let longest = fill.stages.iter().flatten().max_by(|a, b| a.length().total_cmp(&b.length()))?;
+        let is_short = (ALONE * self.first.bead.width..self.section.min_pass_length).contains(&longest.length());
+        (is_short && self.arc_time(longest, layer) >= self.soonest_arc_end).then(|| longest.clone())
+    }
+
+    /// Leaves out passes that are too short to weld, with a warning; `kept` spares one of them.
+    pub(super) fn drop_short(
+        &self,
+        stage: &mut Vec<Path>,
+        kept: Option<&Path>,
+        layer: usize,
+        warnings: &mut Vec<Warning>,
+    ) {
+        stage.retain(|pass| {
+            let length = pass.length();
+            let keep = kept == Some(pass) || self.is_long_enough(pass, layer);
+            // A zigzag that touches a corner with a line of almost no length loses nothing.
+            if !keep && length > 0.1 * self.section.min_pass_length {
+                let place = pass.points.first().copied().unwrap_or_default();
+                warnings.push(Warning { kind: WarningKind::PassTooShort, layer, place, size: length });
+            }
+            keep
+        });
+    }
+}
 
 /// A slice with the passes of its islands, not yet in order.
 #[derive(Clone)]
@@ -42,26 +139,26 @@ pub(super) struct Filled {
 pub(super) fn fill_batch(
     batch: Vec<Planned>,
     strategy: &dyn Strategy,
-    profile: &Profile,
+    filling: &Filling,
     datum: DVec2,
     task: &Task,
 ) -> Result<Vec<Filled>, Cancelled> {
     let fill = |alike: &Vec<usize>| {
         task.check()?;
         let layers: Vec<&Planned> = alike.iter().map(|&i| &batch[i]).collect();
-        Ok(fill_alike(&layers, strategy, profile, datum))
+        Ok(fill_alike(&layers, strategy, filling, datum))
     };
-    let filled = groups(&batch, strategy, profile).par_iter().map(fill).collect::<Result<Vec<_>, _>>()?;
+    let filled = groups(&batch, strategy, filling).par_iter().map(fill).collect::<Result<Vec<_>, _>>()?;
     let mut filled: Vec<Filled> = filled.into_iter().flatten().collect();
     filled.sort_by_key(|filled| filled.slice.index);
     Ok(filled)
 }
 
 /// The slices of a batch, grouped into those that can be filled together.
-fn groups(batch: &[Planned], strategy: &dyn Strategy, profile: &Profile) -> Vec<Vec<usize>> {
-    let settings = |i: usize| FillSettings { layer: 0, ..settings_of(&batch[i], profile) };
+fn groups(batch: &[Planned], strategy: &dyn Strategy, filling: &Filling) -> Vec<Vec<usize>> {
+    let settings = |i: usize| FillSettings { layer: 0, ..filling.of_slice(&batch[i]) };
     // Whether a pass is too short depends on the time that it takes.
-    let rate = |i: usize| profile.process.at_layer(batch[i].slice.index).rate();
+    let rate = |i: usize| filling.process.at_layer(batch[i].slice.index).rate();
     let period = if strategy.repeats() { Some(1) } else { strategy.period() };
     let turn = |i: usize| period.map_or(batch[i].slice.index, |period| batch[i].slice.index % period);
     let alike = |k: usize, i: usize| {
@@ -82,11 +179,11 @@ fn groups(batch: &[Planned], strategy: &dyn Strategy, profile: &Profile) -> Vec<
 }
 
 /// Fills slices of the same shape.
-fn fill_alike(layers: &[&Planned], strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Vec<Filled> {
+fn fill_alike(layers: &[&Planned], strategy: &dyn Strategy, filling: &Filling, datum: DVec2) -> Vec<Filled> {
     let settings: Vec<FillSettings> =
-        layers.iter().map(|layer| FillSettings { datum, ..settings_of(layer, profile) }).collect();
+        layers.iter().map(|layer| FillSettings { datum, ..filling.of_slice(layer) }).collect();
     if let ([layer, others @ ..], true) = (layers, strategy.repeats()) {
-        let mut first = fill_planned(layer, strategy, profile, datum);
+        let mut first = fill_planned(layer, strategy, filling, datum);
         let others: Vec<Filled> = others.iter().map(|other| first.shared_with(&other.slice)).collect();
         return std::iter::once(first).chain(others).collect();
     }
@@ -97,7 +194,7 @@ fn fill_alike(layers: &[&Planned], strategy: &dyn Strategy, profile: &Profile, d
             let all = fills[i].get_or_init(|| strategy.fill_layers(island, &settings));
             all[k].clone()
         };
-        fill_layer(layer.slice.clone(), own, strategy, profile, &settings[k])
+        fill_layer(layer.slice.clone(), own, strategy, filling, &settings[k])
     };
     layers.iter().enumerate().map(fill).collect()
 }
@@ -112,19 +209,11 @@ impl Filled {
     }
 }
 
-fn settings_of<'a>(layer: &'a Planned, profile: &'a Profile) -> FillSettings<'a> {
-    let mut settings = profile.fill_settings(layer.slice.index);
-    settings.raster_angle = layer.raster_angle.unwrap_or(settings.raster_angle);
-    settings.solid = layer.solid.as_ref();
-    settings.turn = turns::turn_of(&layer.slice, profile);
-    settings
-}
-
 /// Fills a slice; `datum` is the reference point of the part.
-pub(super) fn fill_planned(layer: &Planned, strategy: &dyn Strategy, profile: &Profile, datum: DVec2) -> Filled {
-    let settings = FillSettings { datum, ..settings_of(layer, profile) };
+pub(super) fn fill_planned(layer: &Planned, strategy: &dyn Strategy, filling: &Filling, datum: DVec2) -> Filled {
+    let settings = FillSettings { datum, ..filling.of_slice(layer) };
     let fill = |_: usize, island: &Polygon| strategy.fill(island, &settings);
-    fill_layer(layer.slice.clone(), fill, strategy, profile, &settings)
+    fill_layer(layer.slice.clone(), fill, strategy, filling, &settings)
 }
 
 /// Fills a slice; `fill` gives what the strategy lays into an island, by the island's index.
@@ -132,7 +221,7 @@ fn fill_layer(
     mut slice: Slice,
     fill: impl Fn(usize, &Polygon) -> Fill,
     strategy: &dyn Strategy,
-    profile: &Profile,
+    filling: &Filling,
     settings: &FillSettings,
 ) -> Filled {
     let (mut fills, mut planned_area, came_with) = (Vec::with_capacity(slice.islands.len()), 0.0, slice.warnings.len());
@@ -145,21 +234,21 @@ fn fill_layer(
         let mut own = if let Some(helix) = helix {
             helix
         } else if roomy {
-            sound_fill(fill(i, island), island, strategy, profile, settings, reach.area, &mut slice.warnings)
+            sound_fill(fill(i, island), island, strategy, filling, settings, reach.area, &mut slice.warnings)
         } else {
             Fill::default()
         };
         let mut passes = own.stages.iter().flatten();
-        let dot = profile.dot().filter(|_| !passes.any(|pass| is_long_enough(pass, profile, slice.index)));
-        let is_left_out = match dot.and_then(|dot| dot_in(island, profile, slice.height, &dot)) {
+        let dot = filling.laying.dot.filter(|_| !passes.any(|pass| filling.is_long_enough(pass, slice.index)));
+        let is_left_out = match dot.and_then(|dot| dot_in(island, settings.machining_allowance, slice.height, &dot)) {
             Some(pass) => {
                 own.stages = vec![vec![pass]];
                 false
             }
             None => {
-                let (is_left_out, alone) = (own.is_empty(), short_but_alone(&own, profile, slice.index));
+                let (is_left_out, alone) = (own.is_empty(), filling.short_but_alone(&own, slice.index));
                 for stage in &mut own.stages {
-                    drop_short(stage, alone.as_ref(), profile, slice.index, &mut slice.warnings);
+                    filling.drop_short(stage, alone.as_ref(), slice.index, &mut slice.warnings);
                 }
                 is_left_out
             }
@@ -167,12 +256,13 @@ fn fill_layer(
         let warning = |(kind, place, size)| Warning { kind, layer: slice.index, place, size };
         if is_left_out {
             slice.warnings.push(warning((WarningKind::IslandTooSmall, middle(island), island.area())));
-        } else if !profile.is_level() {
-            let cover = Cover::of(&turns::fill_once(&own, island, settings.turn, profile), island, profile, &reach);
+        } else if !filling.is_level {
+            let once = filling.unrolling.fill_once(&own, island, settings.turn);
+            let cover = Cover::of(&once, island, settings, &reach);
             planned_area += cover.area;
             slice.warnings.extend(cover.doubts.into_iter().map(warning));
         }
-        if profile.is_level() {
+        if filling.is_level {
             reaches.push((!is_left_out).then_some(reach));
         }
         fills.push(own);
@@ -186,7 +276,7 @@ fn sound_fill(
     fill: Fill,
     island: &Polygon,
     strategy: &dyn Strategy,
-    profile: &Profile,
+    filling: &Filling,
     settings: &FillSettings,
     reached: f64,
     warnings: &mut Vec<Warning>,
@@ -197,7 +287,7 @@ fn sound_fill(
         return simpler;
     }
     warnings.push(Warning { kind: WarningKind::Refilled, layer: settings.layer, place, size: island.area() });
-    let fill = candidates::best(island, settings, profile, is_sound).unwrap_or_else(|| rings_only(island, settings));
+    let fill = candidates::best(island, settings, filling, is_sound).unwrap_or_else(|| rings_only(island, settings));
     if let Some(place) = unsound(&fill, island, settings, 0.0) {
         // No known part gets here.
         warnings.push(Warning { kind: WarningKind::Unsound, layer: settings.layer, place, size: island.area() });
@@ -218,35 +308,9 @@ fn unsound(fill: &Fill, island: &Polygon, settings: &FillSettings, reached: f64)
     })
 }
 
-/// Leaves out passes that are too short to weld, with a warning; `keep` spares one of them.
-pub(super) fn drop_short(
-    stage: &mut Vec<Path>,
-    kept: Option<&Path>,
-    profile: &Profile,
-    layer: usize,
-    warnings: &mut Vec<Warning>,
-) {
-    stage.retain(|pass| {
-        let length = pass.length();
-        let keep = kept == Some(pass) || is_long_enough(pass, profile, layer);
-        // A zigzag that touches a corner with a line of almost no length loses nothing.
-        if !keep && length > 0.1 * profile.fill.min_pass_length {
-            let place = pass.points.first().copied().unwrap_or_default();
-            warnings.push(Warning { kind: WarningKind::PassTooShort, layer, place, size: length });
-        }
-        keep
-    });
-}
-
-/// Whether a pass is long enough to be welded, and takes longer than its arc needs to become steady.
-fn is_long_enough(pass: &Path, profile: &Profile, layer: usize) -> bool {
-    let is_long = pass.points.len() >= 2 && pass.length() >= profile.fill.min_pass_length;
-    is_long && arc_time(pass, profile, layer) >= profile.soonest_arc_end()
-}
-
-/// The dot that fills an island with its allowance; `None` if none fits.
-fn dot_in(island: &Polygon, profile: &Profile, height: f64, dot: &Dot) -> Option<Path> {
-    match island.offset(profile.fill.machining_allowance, Join::ROUND).polygons() {
+/// The dot that fills an island with its allowance, mm; `None` if none fits.
+fn dot_in(island: &Polygon, allowance: f64, height: f64, dot: &Dot) -> Option<Path> {
+    match island.offset(allowance, Join::ROUND).polygons() {
         [grown] => dot::dot(grown, height, dot),
         _ => None,
     }
@@ -254,26 +318,6 @@ fn dot_in(island: &Polygon, profile: &Profile, height: f64, dot: &Dot) -> Option
 
 /// A short pass that is the only one of an island is kept from this length, in bead widths.
 const ALONE: f64 = 0.25;
-
-/// The longest pass of an island whose passes are all shorter than `fill.min_pass_length`, if it can be welded at all:
-/// the layers above need its metal.
-fn short_but_alone(fill: &Fill, profile: &Profile, layer: usize) -> Option<Path> {
-    let longest = fill.stages.iter().flatten().max_by(|a, b| a.length().total_cmp(&b.length()))?;
-    let is_short = (ALONE * profile.bead.width..profile.fill.min_pass_length).contains(&longest.length());
-    (is_short && arc_time(longest, profile, layer) >= profile.soonest_arc_end()).then(|| longest.clone())
-}
-
-/// How long the torch takes along a pass, s.
-fn arc_time(pass: &Path, profile: &Profile, layer: usize) -> f64 {
-    let process = profile.process.at_layer(layer);
-    let (bead, nominal) = (profile.bead(), profile.process.deposition_speed);
-    let path = pass.path();
-    let time = |(i, ends): (usize, &[DVec2])| {
-        let pace = nominal * profile.bead.law.pace(&bead, pass.width.after(i));
-        ends[0].distance(ends[1]) / process.speed_at(pace)
-    };
-    path.windows(2).enumerate().map(time).sum()
-}
 
 /// The middle of the box around an island.
 fn middle(island: &Polygon) -> DVec2 {

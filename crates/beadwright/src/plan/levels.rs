@@ -10,10 +10,9 @@ use crate::model::Mesh;
 use crate::model::wall_curves::{Section, WallCurves};
 use crate::plan::MAX_LAYERS;
 use crate::plan::charted::Across;
-use crate::plan::choice::is_wall_surface;
+use crate::plan::slicing::Slicing;
 use crate::plan::warm::Warmth;
-use crate::profile::Profile;
-use crate::slice::{self, Lines, Slab, Slice, Slicer};
+use crate::slice::{self, Lines, Slab, Slice};
 use crate::task::{Cancelled, Task};
 use glam::DVec2;
 use planar::Ring;
@@ -33,13 +32,13 @@ pub(super) fn of_mesh(
     mesh: &Mesh,
     wall: &WallBead,
     warmth: &Warmth,
-    profile: &Profile,
+    slicing: &Slicing,
     task: &Task,
 ) -> Result<Vec<Slab>, Cancelled> {
     let (step, top) = (wall.rise(), mesh.bounds().1.z.max(0.0));
     let slabs = slice::even_slabs(mesh, step);
-    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?.on(&profile.layers.chart);
-    let is_surface = is_wall_surface(mesh, profile);
+    let slicer = slicing.slicer(mesh, slabs, task)?;
+    let is_surface = slicing.is_wall(mesh);
     let mut rises = Vec::with_capacity(slicer.layer_count());
     let mut below: Option<Vec<Vec<DVec2>>> = None;
     for batch in 0..slicer.batch_count() {
@@ -52,7 +51,7 @@ pub(super) fn of_mesh(
         let layers: Vec<_> = below.take().into_iter().chain(lines).collect();
         rises.par_extend(layers.par_windows(2).enumerate().map(|(k, pair)| {
             let middle = |k: usize| (k as f64 + 0.5) * step;
-            let across = Across::new(&profile.layers.chart, middle(first + k), middle(first + k + 1));
+            let across = Across::new(slicing.chart, middle(first + k), middle(first + k + 1));
             let edges = |line: &Vec<DVec2>| line.windows(2).map(|w| (w[0], w[1])).collect::<Vec<_>>();
             let upper: Vec<(DVec2, DVec2)> = pair[1].iter().flat_map(edges).collect();
             let beside = |p: DVec2| match across {

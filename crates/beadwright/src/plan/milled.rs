@@ -5,7 +5,6 @@ use crate::fill::Path;
 use crate::fill::coverage::{Bare, Coverage};
 use crate::layer::Layer;
 use crate::model::Mesh;
-use crate::profile::Profile;
 use crate::slice::{Slab, SliceOptions, Slicer};
 use crate::task::{Cancelled, Task};
 use crate::warning::{Warning, WarningKind};
@@ -28,13 +27,12 @@ impl<'a> Milled<'a> {
     ///
     /// # Errors
     /// [`Cancelled`] when the task was.
-    pub(super) fn new(part: &'a Mesh, slabs: &[Slab], profile: &Profile, task: &Task) -> Result<Self, Cancelled> {
+    pub(super) fn new(part: &'a Mesh, slabs: &[Slab], options: SliceOptions, task: &Task) -> Result<Self, Cancelled> {
         let cut = |at: f64| {
             let slab = |slab: &Slab| {
                 let (z, height) = (slab.z - slab.height * (1.0 - at), INSIDE * slab.height);
                 Slab { z: z + height / 2.0, height }
             };
-            let options = SliceOptions { layer_height: profile.layers.height, ..profile.slice_options() };
             Slicer::of_slabs(part, slabs.iter().map(slab).collect(), options, task)
         };
         Ok(Self { ends: [cut(INSIDE)?, cut(1.0 - INSIDE)?] })
@@ -57,9 +55,8 @@ impl<'a> Milled<'a> {
     }
 }
 
-/// The area of the part's faces in a layer that no bead covers.
-pub(super) fn undersize(layer: &Layer, part: &Region, profile: &Profile) -> Option<Warning> {
-    let width = profile.bead.width;
+/// The area of the part's faces in a layer that no bead covers; `width` (mm) is that of the nominal bead.
+pub(super) fn undersize(layer: &Layer, part: &Region, width: f64) -> Option<Warning> {
     let paths: Vec<Path> = layer.passes.iter().map(path).collect();
     let paths: Vec<&Path> = paths.iter().collect();
     let whole = Region::from_normalised(layer.islands.clone()).union(part);

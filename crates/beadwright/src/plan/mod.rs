@@ -29,6 +29,8 @@
 //! | [`preview`] | one layer ahead of the others |
 //! | `turns` | passes that go around an axis more than once |
 //! | `warm` | what heat does to the width of beads and to the layers of a wall |
+//! | `settings` | the settings of every stage, made from the profile once |
+//! | `slicing` | how a part is cut into layers, and what an open surface stands for |
 //! | [`stock`] | turns a part into its preform, which is planned instead |
 //! | `support` | whether passes lie on the metal below |
 //! | `wedges` | where layers of varying thickness lie |
@@ -57,6 +59,8 @@ mod relight;
 mod result;
 mod row;
 mod scan_lines;
+mod settings;
+mod slicing;
 pub mod stock;
 mod support;
 pub(crate) mod turns;
@@ -64,24 +68,25 @@ pub(crate) mod warm;
 mod wedges;
 
 pub use expected::{Expected, expected};
+pub(crate) use judged::AsWelded;
 pub use judged::{deposit_settings, deposit_settings_over, even, grid_over, welded, welded_alone};
 pub use parts::{parts_into, torch_of};
 pub use preview::preview;
 pub use result::{Collect, Header, Plan, PlanError, Sink, Summary};
 pub use scan_lines::{ToFill, raster_angle};
+pub(crate) use settings::PlanSettings;
 pub use turns::{Bands, drawn, is_jump, unrolled_once};
 
 use crate::deposit::Stack;
 use crate::fill::Strategy;
 use crate::fill::around::Around;
 use crate::layer::Extent;
-use crate::metrics::Metrics;
 use crate::model::holes::{self, Opening};
 use crate::model::wall_curves::WallCurves;
 use crate::model::{Mesh, PartRef};
 use crate::order;
 use crate::profile::Profile;
-use crate::slice::{self, BATCH, Slab, Slicer};
+use crate::slice::{self, BATCH, Slab};
 use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{WarningKind, WarningSummary, Warnings};
 use centre_lines::{centre_lines, weld_curves, weld_lines};
@@ -147,14 +152,16 @@ pub fn plan_into<'a, S: Sink + Send>(
     if !profile.layers.bodies.is_empty() || matches!(given, PartRef::Mesh { onto: Some(_), .. }) {
         return bodies::bodies_into(name, given, profile, task, sink);
     }
-    let unrolled = Unrolled::of(given, profile, task)?;
+    let settings = &PlanSettings::of(profile);
+    let chart = settings.slicing.chart;
+    let unrolled = Unrolled::of(given, &settings.slicing, task)?;
     let part = unrolled.as_ref().map_or(given, Unrolled::part);
-    let warmth = warm::predicted(part, profile, task)?;
-    let mut heat = Heat::in_space(part, profile);
-    let mut summary = plan_at(Start::alone(&warmth, heat.as_mut()), name, part, profile, task, sink)?;
+    let warmth = warm::predicted(part, settings, task)?;
+    let mut heat = Heat::in_space(part, settings);
+    let mut summary = plan_at(Start::alone(&warmth, heat.as_mut()), name, part, settings, task, sink)?;
     if let (Some(_), PartRef::Mesh { mesh: placed, .. }, PartRef::Mesh { mesh, .. }) = (&unrolled, given, part) {
-        summary.notes.extend(charted::notes(placed, mesh, profile));
-        summary.forbidden.extend(charted::too_narrow(mesh.bounds().1.z, profile));
+        summary.notes.extend(charted::notes(placed, mesh, chart));
+        summary.forbidden.extend(charted::too_narrow(mesh.bounds().1.z, chart, &settings.weld));
     }
     Ok(summary)
 }
@@ -180,16 +187,16 @@ fn plan_at<S: Sink + Send>(
     start: Start,
     name: &str,
     part: PartRef,
-    profile: &Profile,
+    settings: &PlanSettings,
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
     match part {
         PartRef::Mesh { mesh, milled, .. } => {
-            let strategy = profile.fill.strategy.strategy();
-            plan_mesh(start, name, (mesh, milled), strategy, profile, task, sink)
+            let strategy = settings.strategy.strategy();
+            plan_mesh(start, name, (mesh, milled), strategy, settings, task, sink)
         }
-        PartRef::Curves(curves, height) => plan_curves(start.warmth, name, curves, height, profile, task, sink),
+        PartRef::Curves(curves, height) => plan_curves(start.warmth, name, curves, height, settings, task, sink),
     }
 }
 
@@ -205,10 +212,11 @@ pub fn plan_with<S: Sink + Send>(
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let mesh = &*charted::unrolled(mesh, profile, task)?;
-    let warmth = warm::predicted(mesh.into(), profile, task)?;
-    let mut heat = Heat::in_space(mesh.into(), profile);
-    plan_mesh(Start::alone(&warmth, heat.as_mut()), name, (mesh, None), strategy, profile, task, sink)
+    let settings = &PlanSettings::of(profile);
+    let mesh = &*charted::unrolled(mesh, settings.slicing.chart, task)?;
+    let warmth = warm::predicted(mesh.into(), settings, task)?;
+    let mut heat = Heat::in_space(mesh.into(), settings);
+    plan_mesh(Start::alone(&warmth, heat.as_mut()), name, (mesh, None), strategy, settings, task, sink)
 }
 
 fn plan_mesh<S: Sink + Send>(
@@ -216,38 +224,37 @@ fn plan_mesh<S: Sink + Send>(
     name: &str,
     (mesh, milled): (&Mesh, Option<&Mesh>),
     strategy: &dyn Strategy,
-    profile: &Profile,
+    settings: &PlanSettings,
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
+    let PlanSettings { bead_width, slicing, filling, .. } = settings;
     let opening = holes::openings(mesh).into_iter().next();
-    let wide = opening.filter(|opening| opening.width > profile.bead.width);
+    let wide = opening.filter(|opening| opening.width > *bead_width);
     // Around an axis the part itself has already been checked.
-    let unsaid = profile.slice.surface.is_none() && profile.layers.chart.is_level();
+    let unsaid = slicing.surface.is_none() && slicing.chart.is_level();
     if let Some(Opening { width, place, .. }) = wide.filter(|_| unsaid) {
         return Err(PlanError::Open { width, place });
     }
-    let is_wall = choice::is_wall_surface(mesh, profile);
-    let slabs = slabs_at(warmth, mesh, profile, task)?;
-    let left = left_over(mesh, &slabs, profile);
+    let is_wall = slicing.is_wall(mesh);
+    let slabs = slabs_at(warmth, mesh, settings, task)?;
+    let left = left_over(mesh, &slabs, settings.layers.height);
     let (low, high) = mesh.bounds();
     let mut own = Heat::default();
     let heat = heat.unwrap_or_else(|| {
-        own = Heat::of(profile, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs, warmth);
+        own = Heat::of(&settings.warming, &Bounds { min: low.truncate(), max: high.truncate() }, &slabs, warmth);
         &mut own
     });
     let milled_volume = milled.map(Mesh::volume);
-    let milled = milled.map(|part| Milled::new(part, &slabs, profile, task)).transpose()?;
-    let slicer = Slicer::of_slabs(mesh, slabs, profile.slice_options(), task)?
-        .on(&profile.layers.chart)
-        .no_thicker_than(profile.layers.window().1);
+    let milled = milled.map(|part| Milled::new(part, &slabs, slicing.options, task)).transpose()?;
+    let slicer = slicing.filled(mesh, slabs, task)?;
     let datum = middle(mesh);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         if is_wall {
-            return Ok(slicer.lines(batch, task)?.into_par_iter().map(|lines| weld_lines(lines, profile)).collect());
+            return Ok(slicer.lines(batch, task)?.into_par_iter().map(|lines| weld_lines(lines, filling)).collect());
         }
-        let planned = scan_lines::planned(batch, &slicer, strategy, profile, task)?;
-        let mut filled = filled::fill_batch(planned, strategy, profile, datum, task)?;
+        let planned = scan_lines::planned(batch, &slicer, strategy, filling, task)?;
+        let mut filled = filled::fill_batch(planned, strategy, filling, datum, task)?;
         if let Some(milled) = &milled {
             filled.iter_mut().zip(milled.batch(batch, task)?).for_each(|(filled, part)| filled.milled = Some(part));
         }
@@ -255,19 +262,18 @@ fn plan_mesh<S: Sink + Send>(
     };
     let (low, high) = mesh.bounds();
     let extent = Extent { layers: slicer.layer_count(), low, high };
-    let mut summary = run([name, strategy.name()], extent, (heat, footing), profile, task, sink, fill_batch)?;
+    let mut summary = run([name, strategy.name()], extent, (heat, footing), settings, task, sink, fill_batch)?;
     if summary.metrics.passes == 0 {
-        return Err(PlanError::Empty(why_empty(&summary, mesh, profile)));
+        return Err(PlanError::Empty(why_empty(&summary, mesh, *bead_width)));
     }
-    let volume = profile.layers.chart.volume(mesh);
+    let volume = slicing.chart.volume(mesh);
     summary.metrics.mesh_volume_mm3 = Some(volume).filter(|volume| opening.is_none() && *volume > 0.0);
     summary.metrics.milled_part_volume_mm3 = milled_volume;
     let volumes = if is_wall { None } else { other_volume(&summary, volume, left.is_some()) };
     summary.notes.splice(0..0, left.into_iter().chain(volumes));
     if unsaid {
-        let torn = |w: &&WarningSummary| {
-            w.kind == WarningKind::OpenContourDropped && w.largest.size > TORN * profile.bead.width
-        };
+        let torn =
+            |w: &&WarningSummary| w.kind == WarningKind::OpenContourDropped && w.largest.size > TORN * bead_width;
         let torn = summary.warnings.summaries().find(torn).map(WarningSummary::sentence);
         summary.forbidden.extend(torn.map(|torn| {
             format!("{torn} With slice.surface = \"solid\" the rest is planned without what does not close.")
@@ -294,32 +300,38 @@ pub fn slabs<'a>(
     profile: &Profile,
     task: &Task,
 ) -> Result<Vec<Slab>, PlanError<Infallible>> {
-    let given = part.into();
-    let unrolled = Unrolled::of(given, profile, task)?;
+    let (given, settings) = (part.into(), &PlanSettings::of(profile));
+    let unrolled = Unrolled::of(given, &settings.slicing, task)?;
     let part = unrolled.as_ref().map_or(given, Unrolled::part);
-    slabs_of(&warm::predicted(part, profile, task)?, part, profile, task)
+    slabs_of(&warm::predicted(part, settings, task)?, part, settings, task)
 }
 
 /// Where the layers of a part lie, with this warmth.
-fn slabs_of<E>(warmth: &Warmth, part: PartRef, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
+fn slabs_of<E>(
+    warmth: &Warmth,
+    part: PartRef,
+    settings: &PlanSettings,
+    task: &Task,
+) -> Result<Vec<Slab>, PlanError<E>> {
     match part {
-        PartRef::Mesh { mesh, .. } => slabs_at(warmth, mesh, profile, task),
+        PartRef::Mesh { mesh, .. } => slabs_at(warmth, mesh, settings, task),
         PartRef::Curves(curves, height) => {
-            let curves = centre_lines(curves, profile)?;
-            Ok(levels::of_curves(&curves, height, &profile.single_wall()?, warmth))
+            let curves = centre_lines(curves, settings.curves, settings.bead_width)?;
+            Ok(levels::of_curves(&curves, height, &settings.curve_wall?, warmth))
         }
     }
 }
 
 /// Where the layers of a mesh lie, with this warmth.
-fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
-    check_layer_count(mesh, profile)?;
-    let slabs = match profile.wall_bead()? {
-        Some(wall) => levels::of_mesh(mesh, &wall, warmth, profile, task)?,
-        None if profile.is_level() => level_layers::slabs(mesh, profile.fill.strategy.strategy(), profile, task)?,
-        None => slice::fitted_slabs(mesh, profile.layers.height, profile.layers.fit),
+fn slabs_at<E>(warmth: &Warmth, mesh: &Mesh, settings: &PlanSettings, task: &Task) -> Result<Vec<Slab>, PlanError<E>> {
+    let PlanSettings { layers, slicing, sharing, .. } = settings;
+    check_layer_count(mesh, layers.height)?;
+    let slabs = match (settings.wall?, sharing) {
+        (Some(wall), _) => levels::of_mesh(mesh, &wall, warmth, slicing, task)?,
+        (None, Some(sharing)) => level_layers::slabs(mesh, sharing, settings, task)?,
+        (None, None) => slice::fitted_slabs(mesh, layers.height, layers.fit),
     };
-    Ok(wedges::slabs(slabs, mesh, profile, task)?)
+    Ok(wedges::slabs(slabs, mesh, layers, slicing.options, task)?)
 }
 
 /// Plans a wall one bead thick along curves, up to `height` (mm).
@@ -328,35 +340,28 @@ fn plan_curves<S: Sink + Send>(
     name: &str,
     curves: &WallCurves,
     height: f64,
-    profile: &Profile,
+    settings: &PlanSettings,
     task: &Task,
     sink: &mut S,
 ) -> Result<Summary, PlanError<S::Error>> {
-    let given = curves;
-    let curves = &*centre_lines(given, profile)?;
-    let slabs = levels::of_curves(curves, height, &profile.single_wall()?, warmth);
+    let (given, width) = (curves, settings.bead_width);
+    let curves = &*centre_lines(given, settings.curves, width)?;
+    let slabs = levels::of_curves(curves, height, &settings.curve_wall?, warmth);
     let bounds = curves.bounds(height).unwrap_or(Bounds { min: DVec2::ZERO, max: DVec2::ZERO });
     let (low, high) = (bounds.min.extend(0.0), bounds.max.extend(height));
     let extent = Extent { layers: slabs.len(), low, high };
-    let mut heat = Heat::of(profile, &bounds, &slabs, warmth);
+    let mut heat = Heat::of(&settings.warming, &bounds, &slabs, warmth);
     let fill_batch = |batch: usize| -> Result<Vec<Filled>, Cancelled> {
         let layers = batch * BATCH..((batch + 1) * BATCH).min(slabs.len());
         let fill = |index: usize| {
             task.check()?;
-            Ok(weld_curves(curves, index, slabs[index], profile))
+            Ok(weld_curves(curves, index, slabs[index], &settings.filling))
         };
         layers.into_par_iter().map(fill).collect()
     };
-    let mut summary = run(
-        [name, profile.fill.strategy.name()],
-        extent,
-        (&mut heat, Footing::PLATE),
-        profile,
-        task,
-        sink,
-        fill_batch,
-    )?;
-    summary.notes.extend(centre_lines::other_thickness(given, profile));
+    let mut summary =
+        run([name, settings.strategy.name()], extent, (&mut heat, Footing::PLATE), settings, task, sink, fill_batch)?;
+    summary.notes.extend(centre_lines::other_thickness(given, settings.curves, width));
     if summary.metrics.passes == 0 {
         return Err(PlanError::Empty(
             "each curve is shorter than fill.min_pass_length, or than the distance within which ends are joined \
@@ -372,34 +377,36 @@ fn run<S: Sink + Send>(
     [part, strategy]: [&str; 2],
     extent: Extent,
     (heat, footing): (&mut Heat, Footing),
-    profile: &Profile,
+    settings: &PlanSettings,
     task: &Task,
     sink: &mut S,
     fill_batch: impl Fn(usize) -> Result<Vec<Filled>, Cancelled> + Sync,
 ) -> Result<Summary, PlanError<S::Error>> {
     let [part, strategy] = [part, strategy].map(str::to_owned);
-    let header = Header { part, profile: profile.name.clone(), strategy, extent };
+    let header = Header { part, profile: settings.profile.to_owned(), strategy, extent };
     sink.begin(&header).map_err(PlanError::Sink)?;
+    let grown = settings.sharing.filter(|sharing| sharing.deposit.over_one_another).map(|sharing| {
+        let (bounds, layers) = judged::grid(sharing.height, (extent.low, extent.high));
+        Stack::new(&bounds, sharing.deposit.fitted_to(&bounds, layers))
+    });
     let mut emitter = Emitter {
-        profile,
+        settings,
         sink,
         middle: extent.seen_from_above().center(),
         torch: None,
         heat,
         memory: order::Memory::default(),
-        helix: profile.wall.helix.then(|| Helix::new(extent.layers, profile.longest_pass())),
+        helix: settings.helix.then(|| Helix::new(extent.layers, settings.relighting.most)),
         no_turn: None,
         below: Vec::new(),
         support: Support::on(footing),
-        grown: Some(deposit_settings_over(profile, (extent.low, extent.high)))
-            .filter(|settings| profile.is_level() && settings.over_one_another)
-            .map(|settings| Stack::new(&extent.seen_from_above(), settings)),
+        grown,
         before: Vec::new(),
         below_middle: 0.0,
         built: 0.0,
         points: 0,
         has_helix: false,
-        metrics: Metrics::new(profile),
+        metrics: settings.metrics.clone(),
         warnings: Warnings::default(),
     };
     let batches = extent.layers.div_ceil(BATCH);
@@ -419,25 +426,23 @@ fn run<S: Sink + Send>(
     }
     let Emitter { metrics, warnings, points, has_helix, memory, .. } = emitter;
     let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
-    let forbidden = profile.forbidden().into_iter().chain(forbids).collect();
-    let large = profile.check.max_plan_points.filter(|most| points > *most as usize);
+    let forbidden = settings.forbidden.iter().cloned().chain(forbids).collect();
+    let large = settings.limits.max_plan_points.filter(|most| points > *most as usize);
     let large = large.map(|most| format!("The plan has {points} points; the limit is {most} (check.max_plan_points)."));
-    let asked = profile.fill.around == Some(Around::Helix) && profile.layers.chart.goes_around();
+    let asked = settings.filling.section.around == Some(Around::Helix) && settings.slicing.chart.goes_around();
     let open = (asked && !has_helix).then(|| NO_HELIX.to_owned());
-    let notes =
-        large.into_iter().chain(open).chain(balanced(memory.detour(), profile)).chain(profile.notes()).collect();
+    let balanced = settings.filling.laying.order.balance.map(|_| balanced(memory.detour(), settings.weld.travel.speed));
+    let notes = large.into_iter().chain(open).chain(balanced).chain(settings.notes.iter().cloned()).collect();
     Ok(Summary { metrics, warnings, notes, forbidden })
 }
 
-/// What it costs to keep heat around the middle of the plate: `detour` is how much longer travels became, mm.
-fn balanced(detour: f64, profile: &Profile) -> Option<String> {
-    let (metres, seconds) = (detour.max(0.0) / 1e3, detour.max(0.0) / profile.travel.speed);
-    profile.order.distortion.then(|| {
-        format!(
-            "Heat is kept around the middle of the plate (order.distortion): travels become {metres:.1} m longer and take \
-             {seconds:.0} s more."
-        )
-    })
+/// What it costs to keep heat around the middle of the plate: `detour` is how much longer travels became, mm, at a speed in mm/s.
+fn balanced(detour: f64, speed: f64) -> String {
+    let (metres, seconds) = (detour.max(0.0) / 1e3, detour.max(0.0) / speed);
+    format!(
+        "Heat is kept around the middle of the plate (order.distortion): travels become {metres:.1} m longer and take \
+         {seconds:.0} s more."
+    )
 }
 
 /// Why there is no helix, though one was asked for.
@@ -445,8 +450,8 @@ const NO_HELIX: &str = "No layer is laid as a helix (fill.around): its islands m
                         edges that are rings, with room for whole beads and without holes, the strategy must not be wall, and the \
                         positioner must be able to turn as often as there are rings.";
 
-fn check_layer_count<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<E>> {
-    let (height, layer_height) = (mesh.size().z, profile.layers.height);
+fn check_layer_count<E>(mesh: &Mesh, layer_height: f64) -> Result<(), PlanError<E>> {
+    let height = mesh.size().z;
     let layers = (height / layer_height) as usize;
     if layers > MAX_LAYERS {
         return Err(PlanError::TooManyLayers { height, layers, layer_height });

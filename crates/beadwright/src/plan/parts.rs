@@ -3,6 +3,7 @@
 
 use super::clearance::{Clearance, Close, Watch};
 use super::row::{NUMBERED_APART, Row};
+use super::settings::PlanSettings;
 use super::warm::Warmth;
 use super::{Header, PlanError, Sink, Start, Summary, plan_at, slabs_of, warm};
 use crate::layer::Extent;
@@ -31,9 +32,10 @@ pub fn parts_into<S: Sink + Send>(
     if !profile.process.layers.is_empty() {
         return Err(PlanError::Parts(NUMBERED_APART));
     }
+    let settings = &PlanSettings::of(profile);
     let predicted = |(_, part): &(String, PartRef)| -> Result<(Warmth, usize), PlanError<S::Error>> {
-        let warmth = warm::predicted(*part, profile, task)?;
-        let count = slabs_of(&warmth, *part, profile, task)?.len();
+        let warmth = warm::predicted(*part, settings, task)?;
+        let count = slabs_of(&warmth, *part, settings, task)?.len();
         Ok((warmth, count))
     };
     let predicted = parts.iter().map(predicted).collect::<Result<Vec<_>, _>>()?;
@@ -41,15 +43,15 @@ pub fn parts_into<S: Sink + Send>(
     let bounds = parts.iter().map(|(_, part)| part.bounds());
     let (low, high) = bounds.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default();
     let extent = Extent { layers: counts.iter().sum(), low, high };
-    let strategy = profile.fill.strategy.to_string();
-    let header = Header { part: name.to_owned(), profile: profile.name.clone(), strategy, extent };
+    let (profile, strategy) = (settings.profile.to_owned(), settings.strategy.to_string());
+    let header = Header { part: name.to_owned(), profile, strategy, extent };
     sink.begin(&header).map_err(PlanError::Sink)?;
-    let (mut clearance, width) = (Clearance::default(), profile.bead.width);
-    let mut row = Row::new(profile, sink, true);
+    let (mut clearance, width) = (Clearance::default(), settings.bead_width);
+    let mut row = Row::new(settings, sink, true);
     for (((name, part), warmth), count) in parts.iter().zip(&warmths).zip(&counts) {
         clearance.begin(name);
         let mut watch = Watch { sink: &mut row, clearance: &mut clearance, torch, width };
-        let own = plan_at(Start::alone(warmth, None), name, *part, profile, task, &mut watch)?;
+        let own = plan_at(Start::alone(warmth, None), name, *part, settings, task, &mut watch)?;
         row.finish(name, *count, &own);
     }
     let mut summary = row.summary("The parts are welded one after another");

@@ -2,16 +2,16 @@
 
 use super::centre_lines::{centre_lines, weld_curves};
 use super::emitter::Emitter;
-use super::filled::{Filled, fill_planned};
+use super::filled::{Filled, Filling, fill_planned};
+use super::settings::PlanSettings;
 use super::support::Support;
 use super::warm::{Heat, Warmth};
 use super::{PlanError, Sink, charted, levels, scan_lines, slabs_at};
 use crate::layer::Layer;
-use crate::metrics::Metrics;
 use crate::model::{Mesh, Part};
 use crate::order::Memory;
 use crate::profile::{Profile, RasterTurn};
-use crate::slice::{BATCH, Slab, Slicer};
+use crate::slice::{BATCH, Slab};
 use crate::task::Task;
 use crate::warning::Warnings;
 use std::convert::Infallible;
@@ -28,22 +28,24 @@ pub fn preview(
     index: usize,
     task: &Task,
 ) -> Result<Option<Layer>, PlanError<Infallible>> {
+    let settings = &PlanSettings::of(profile);
     let filled = match part {
-        Part::Mesh(import) => of_mesh(&*charted::unrolled(&import.mesh, profile, task)?, profile, index, task)?,
+        Part::Mesh(import) => {
+            of_mesh(&*charted::unrolled(&import.mesh, settings.slicing.chart, task)?, settings, index, task)?
+        }
         Part::Curves { curves, height, .. } => {
-            let curves = &*centre_lines(curves, profile)?;
-            let slabs = levels::of_curves(curves, *height, &profile.single_wall()?, &Warmth::default());
+            let curves = &*centre_lines(curves, settings.curves, settings.bead_width)?;
+            let slabs = levels::of_curves(curves, *height, &settings.curve_wall?, &Warmth::default());
             let index = index.min(slabs.len().saturating_sub(1));
-            slabs.get(index).map(|slab| weld_curves(curves, index, *slab, profile))
+            slabs.get(index).map(|slab| weld_curves(curves, index, *slab, &settings.filling))
         }
     };
     let mut last = Last(None);
-    let (metrics, warnings) = (Metrics::new(profile), Warnings::default());
     let (low, high) = part.bounds();
     // The layers below are assumed to be there.
     let built = f64::INFINITY;
     let mut emitter = Emitter {
-        profile,
+        settings,
         sink: &mut last,
         middle: low.midpoint(high).truncate(),
         torch: None,
@@ -60,26 +62,29 @@ pub fn preview(
         built,
         points: 0,
         has_helix: false,
-        metrics,
-        warnings,
+        metrics: settings.metrics.clone(),
+        warnings: Warnings::default(),
     };
     filled.map(|filled| emitter.emit(filled)).transpose().map_err(PlanError::Sink)?;
     Ok(last.0)
 }
 
-fn of_mesh(mesh: &Mesh, profile: &Profile, index: usize, task: &Task) -> Result<Option<Filled>, PlanError<Infallible>> {
-    let (strategy, slabs) = (profile.fill.strategy.strategy(), slabs_at(&Warmth::default(), mesh, profile, task)?);
+fn of_mesh(
+    mesh: &Mesh,
+    settings: &PlanSettings,
+    index: usize,
+    task: &Task,
+) -> Result<Option<Filled>, PlanError<Infallible>> {
+    let (strategy, slabs) = (settings.strategy.strategy(), slabs_at(&Warmth::default(), mesh, settings, task)?);
     let index = index.min(slabs.len().saturating_sub(1));
-    let window = window(&slabs, index, profile);
-    let slicer = Slicer::of_slabs(mesh, window.slabs.to_vec(), profile.slice_options(), task)?
-        .on(&profile.layers.chart)
-        .no_thicker_than(profile.layers.window().1);
+    let window = window(&slabs, index, settings);
+    let slicer = settings.slicing.filled(mesh, window.slabs.to_vec(), task)?;
     // Slices are numbered within the window; a sparse infill depends on its neighbours there.
-    let planned = scan_lines::planned(0, &slicer, strategy, profile, task)?;
+    let planned = scan_lines::planned(0, &slicer, strategy, &settings.filling, task)?;
     let layer = planned.into_iter().nth(index - window.first).map(|mut layer| {
         layer.slice.index = index;
         layer.slice.warnings.iter_mut().for_each(|warning| warning.layer = index);
-        fill_planned(&layer, strategy, profile, super::middle(mesh))
+        fill_planned(&layer, strategy, &settings.filling, super::middle(mesh))
     });
     Ok(layer)
 }
@@ -90,10 +95,11 @@ struct Window<'a> {
 }
 
 /// The layers that a layer's fill depends on, from an even index on, since best angles are chosen for pairs.
-fn window<'a>(slabs: &'a [Slab], index: usize, profile: &Profile) -> Window<'a> {
+fn window<'a>(slabs: &'a [Slab], index: usize, settings: &PlanSettings) -> Window<'a> {
+    let Filling { section, first, .. } = &settings.filling;
     // The lower layer of a pair is filled up by the next one.
-    let pair = usize::from(profile.fill.raster_turn == RasterTurn::Best || profile.layers.chart.has_wedges());
-    let solid = if profile.fill.infill_density < 1.0 { profile.fill.solid_layers as usize } else { 0 };
+    let pair = usize::from(section.raster_turn == RasterTurn::Best || settings.slicing.chart.has_wedges());
+    let solid = if first.infill_density < 1.0 { section.solid_layers as usize } else { 0 };
     let reach = solid.min(BATCH / 2 - 1);
     let first = index.saturating_sub(reach) & !1;
     let last = (index + reach.max(pair)).min(slabs.len().saturating_sub(1));

@@ -2,7 +2,6 @@
 
 use super::Summary;
 use crate::model::Mesh;
-use crate::profile::Profile;
 use crate::slice::{self, LayerFit, Slab};
 use crate::warning::{WarningKind, WarningSummary};
 
@@ -32,8 +31,9 @@ pub(super) fn other_volume(summary: &Summary, mesh: f64, left: bool) -> Option<S
     Some(format!("The slices hold {:.2} cm³, the mesh {:.2} cm³ ({percent:+.1} %): {why}.", slices / 1e3, mesh / 1e3))
 }
 
-/// Why a solid gives no passes: what was dropped on the way, or that it is too narrow.
-pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> String {
+/// Why a solid gives no passes: what was dropped on the way, or that it is too narrow for
+/// beads of some width, mm.
+pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, width: f64) -> String {
     let warned = |kind| summary.warnings.summaries().find(|w| w.kind == kind).map(WarningSummary::sentence);
     let size = mesh.size();
     let part = format!("the part is {:.1} × {:.1} × {:.1} mm", size.x, size.y, size.z);
@@ -46,7 +46,6 @@ pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> St
             ),
         };
     }
-    let width = profile.bead.width;
     let remedy = "Use a narrower bead or a larger part, or check the unit of the file.";
     match warned(WarningKind::PassTooShort) {
         Some(short) => {
@@ -58,8 +57,9 @@ pub(super) fn why_empty(summary: &Summary, mesh: &Mesh, profile: &Profile) -> St
     }
 }
 
-/// How far the last layer ends below or above the part, as a sentence; `None` where that does not matter.
-pub(super) fn left_over(mesh: &Mesh, slabs: &[Slab], profile: &Profile) -> Option<String> {
+/// How far the last layer ends below or above the part, as a sentence; `None` where that does not matter. A
+/// usual layer is `height` (mm) high.
+pub(super) fn left_over(mesh: &Mesh, slabs: &[Slab], height: f64) -> Option<String> {
     /// Fraction of the height.
     const WORTH_TELLING: f64 = 0.005;
     let (top, last) = (mesh.bounds().1.z, slabs.last()?.z);
@@ -70,11 +70,11 @@ pub(super) fn left_over(mesh: &Mesh, slabs: &[Slab], profile: &Profile) -> Optio
     let layers = if slabs.len() == 1 { "its layer ends".to_owned() } else { format!("its {} layers end", slabs.len()) };
     let ends = format!("The part is {top:.2} mm high, but {layers} at {last:.2} mm");
     // Layers of walls are as high as their metal, whatever layers.fit is.
-    let as_set = slabs.iter().all(|slab| (slab.height - profile.layers.height).abs() < 1e-6);
+    let as_set = slabs.iter().all(|slab| (slab.height - height).abs() < 1e-6);
     Some(if last < top && !as_set {
         format!("{ends}: the upper {left:.2} mm ({percent:.1} %) are not built.")
     } else if last < top {
-        let even = slice::fitted_slabs(mesh, profile.layers.height, LayerFit::Even);
+        let even = slice::fitted_slabs(mesh, height, LayerFit::Even);
         let each = even.first().map_or(0.0, |slab| slab.height);
         format!(
             "{ends}: the upper {left:.2} mm ({percent:.1} %) are not built. layers.fit = \"last\" adds a layer, \"even\" \

@@ -3,16 +3,27 @@
 
 use crate::layer::Layer;
 use crate::pass::Pass;
-use crate::profile::Profile;
+use crate::program::Programmer;
 use crate::warning::{Warning, WarningKind};
 
 /// Passes of fewer moves than this are never cut; their instructions are not even counted.
 const LEAST: usize = 10;
 
+/// How passes are cut that are too long for a program.
+#[derive(Debug, Clone)]
+pub(super) struct Relighting {
+    /// The most instructions that a pass may have; `None` where it may have any number.
+    pub(super) most: Option<usize>,
+    /// How far the pieces of a pass overlap, mm.
+    pub(super) overlap: f64,
+    /// Counts instructions.
+    pub(super) programmer: Programmer,
+}
+
 /// Cuts the passes of a layer that have more moves than a program can hold, and warns of each.
-pub(super) fn relight(layer: &mut Layer, profile: &Profile) {
-    let Some(most) = profile.longest_pass() else { return };
-    let cut = |pass: Pass| if pass.points.len() + LEAST <= most { vec![pass] } else { pieces(pass, most, profile) };
+pub(super) fn relight(layer: &mut Layer, settings: &Relighting) {
+    let Some(most) = settings.most else { return };
+    let cut = |pass: Pass| if pass.points.len() + LEAST <= most { vec![pass] } else { pieces(pass, most, settings) };
     for pieces in std::mem::take(&mut layer.passes).into_iter().map(cut) {
         if let Some(again) = pieces.get(1) {
             let (kind, place) = (WarningKind::Relit, again.start().unwrap_or_default().truncate());
@@ -24,23 +35,22 @@ pub(super) fn relight(layer: &mut Layer, profile: &Profile) {
 }
 
 /// A pass in as few pieces of equal length as the programs need.
-fn pieces(pass: Pass, most: usize, profile: &Profile) -> Vec<Pass> {
-    let fits = |pass: &Pass| instructions(pass, profile) <= most;
+fn pieces(pass: Pass, most: usize, settings: &Relighting) -> Vec<Pass> {
+    let fits = |pass: &Pass| instructions(pass, settings) <= most;
     if fits(&pass) {
         return vec![pass];
     }
-    let overlap = profile.start_stop.end_overlap.max(profile.bead.width);
     let most_pieces = pass.points.len();
     (2..most_pieces)
-        .map(|count| equal_pieces(&pass, count, overlap))
+        .map(|count| equal_pieces(&pass, count, settings.overlap))
         .find(|pieces| pieces.iter().all(fits))
         .unwrap_or_else(|| vec![pass])
 }
 
 /// Number of instructions that a program needs for a pass.
-fn instructions(pass: &Pass, profile: &Profile) -> usize {
+fn instructions(pass: &Pass, settings: &Relighting) -> usize {
     let layer = Layer { passes: vec![pass.clone()], ..Layer::default() };
-    profile.programmer().layer(&layer).instructions.len()
+    settings.programmer.clone().layer(&layer).instructions.len()
 }
 
 /// A pass cut into open pieces of equal length, each of which begins `overlap` (mm) before the end of the one before;

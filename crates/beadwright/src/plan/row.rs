@@ -1,10 +1,11 @@
 //! The layers of parts or bodies that are welded one after another, as those of one plan: numbered consecutively, with
 //! each report made once.
 
+use super::settings::PlanSettings;
 use super::{Header, Sink, Summary};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
-use crate::profile::Profile;
+use crate::profile::LayersSection;
 use crate::warning::{WarningSummary, Warnings};
 
 /// Why values for some layers cannot be used (`process.layers`).
@@ -13,7 +14,8 @@ pub(super) const NUMBERED_APART: &str =
 
 /// Numbers layers consecutively and hands them on.
 pub(super) struct Row<'a, S> {
-    profile: &'a Profile,
+    /// How the layers of all bodies lie in space.
+    layers: &'a LayersSection,
     sink: &'a mut S,
     /// The body whose layers are coming; 0 for parts.
     pub(super) body: usize,
@@ -32,19 +34,19 @@ pub(super) struct Row<'a, S> {
 
 impl<'a, S: Sink> Row<'a, S> {
     /// No layers yet; the plan as a whole has already begun.
-    pub(super) fn new(profile: &'a Profile, sink: &'a mut S, several: bool) -> Self {
+    pub(super) fn new(settings: &PlanSettings<'a>, sink: &'a mut S, several: bool) -> Self {
         Self {
-            profile,
+            layers: settings.layers,
             sink,
             body: 0,
             first: 0,
             several,
             ranges: Vec::new(),
-            metrics: Metrics::new(profile),
+            metrics: settings.metrics.clone(),
             volume: Some(0.0),
             warnings: Warnings::default(),
-            notes: profile.notes(),
-            forbidden: profile.forbidden(),
+            notes: settings.notes.clone(),
+            forbidden: settings.forbidden.clone(),
         }
     }
 
@@ -89,7 +91,7 @@ impl<S: Sink> Sink for Row<'_, S> {
         layer.index += self.first;
         layer.body = self.body;
         layer.warnings.iter_mut().for_each(|warning| warning.layer += self.first);
-        let sheet = self.profile.layers.sheet(&layer);
+        let sheet = self.layers.sheet(&layer);
         for warning in &layer.warnings {
             let at = sheet.map(|sheet| sheet.at(warning.place.extend(layer.z)).place);
             self.warnings.add_at(*warning, layer.z, at);

@@ -1,13 +1,13 @@
 //! Turns a part into its preform, which is planned instead.
 
+use super::slicing::Slicing;
 use super::{PlanError, TORN};
-use crate::model::holes::{self, Opening};
 use crate::model::{Import, Mesh, Milled, Part};
 use crate::preform::Preform;
 use crate::preform::faces;
 use crate::preform::figures::Figures;
 use crate::profile::Profile;
-use crate::slice::{Slice, Slicer, Surface};
+use crate::slice::{Slice, Slicer};
 use crate::task::{Cancelled, Task};
 use crate::warning::WarningKind;
 use std::convert::Infallible;
@@ -49,8 +49,9 @@ impl Stocked {
         if !profile.layers.are_level() {
             return Err(PlanError::PreformOfChart);
         }
-        is_closed(&import.mesh, profile)?;
-        import.notes.extend(lost(&import.mesh, profile, task)?);
+        let slicing = Slicing::of(profile);
+        slicing.closed(&import.mesh)?;
+        import.notes.extend(lost(&import.mesh, &slicing, task)?);
         let settings = profile.preform_settings();
         let preform = Preform::of(&import.mesh, &settings, task)?;
         let solid = preform.mesh();
@@ -66,19 +67,18 @@ impl Stocked {
 }
 
 /// What an open surface loses where its contours do not close, as a sentence.
-fn lost(mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Option<String>, Cancelled> {
-    let is_open = holes::openings(mesh).first().is_some_and(|opening| opening.width > profile.bead.width);
-    if !is_open {
+fn lost(mesh: &Mesh, slicing: &Slicing, task: &Task) -> Result<Option<String>, Cancelled> {
+    if !slicing.is_open(mesh) {
         return Ok(None);
     }
-    let slices = Slicer::new(mesh, profile.slice_options(), task)?.all(task)?;
+    let slices = Slicer::new(mesh, slicing.options, task)?.all(task)?;
     let dropped = |slice: &Slice| {
         let dropped = slice.warnings.iter().filter(|warning| warning.kind == WarningKind::OpenContourDropped);
         let longest = dropped.max_by(|a, b| a.size.total_cmp(&b.size))?;
         Some((longest.size, longest.place.extend(slice.z - slice.height / 2.0)))
     };
     let longest = slices.iter().filter_map(dropped).max_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(longest.filter(|(length, _)| *length > TORN * profile.bead.width).map(|(length, at)| {
+    Ok(longest.filter(|(length, _)| *length > TORN * slicing.bead_width).map(|(length, at)| {
         format!(
             "The preform lacks part of the solid: as it stands, contours of its open surface do not close and are \
              left out, the longest {length:.0} mm near x {:.1} y {:.1} z {:.1} mm. Turn the part so that it stands on \
@@ -96,11 +96,5 @@ const EMPTY: &str = "no slice of the part has a closed contour, so it has no pre
 /// # Errors
 /// [`PlanError::Open`].
 pub fn is_closed<E>(mesh: &Mesh, profile: &Profile) -> Result<(), PlanError<E>> {
-    let opening = holes::openings(mesh).into_iter().next();
-    match opening.filter(|opening| opening.width > profile.bead.width) {
-        Some(Opening { width, place, .. }) if profile.slice.surface != Some(Surface::Solid) => {
-            Err(PlanError::Open { width, place })
-        }
-        _ => Ok(()),
-    }
+    Slicing::of(profile).closed(mesh)
 }

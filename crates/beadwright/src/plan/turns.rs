@@ -3,12 +3,11 @@
 
 use super::cover;
 use crate::chart::Chart;
-use crate::fill::around::{self, Around, Turn};
-use crate::fill::{Fill, Path, StrategyName};
+use crate::fill::around::{self, Turn};
+use crate::fill::{Fill, Path};
 use crate::layer::Layer;
 use crate::pass::{Along, Pass, Segment};
-use crate::profile::Profile;
-use crate::program::Turning;
+use crate::profile::{LayersSection, Profile};
 use crate::slice::{Slice, middle};
 use crate::warning::Warning;
 use glam::{DVec2, DVec3};
@@ -18,18 +17,74 @@ use std::borrow::Cow;
 /// Pieces shorter than this are ignored, mm.
 const NOTHING: f64 = 1e-6;
 
-/// The turns that a slice allows, if islands that go all around are filled with a helix.
-pub(super) fn turn_of(slice: &Slice, profile: &Profile) -> Option<Turn> {
-    // Walls are welded along their middle, not as a helix.
-    if profile.fill.around != Some(Around::Helix) || profile.fill.strategy == StrategyName::Wall {
-        return None;
+/// How layers that go around an axis are unrolled.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Unrolling<'p> {
+    /// How layers lie in space.
+    pub(crate) layers: &'p LayersSection,
+    /// Width of the nominal bead, mm.
+    pub(crate) bead_width: f64,
+    /// How far beads may reach beyond the outline, mm.
+    pub(crate) allowance: f64,
+}
+
+impl Unrolling<'_> {
+    /// A turn of a slice of the only body; `None` where its layers do not close around an axis. `most` is the greatest
+    /// number of turns.
+    pub(super) fn turn(&self, slice: &Slice, most: f64) -> Option<Turn> {
+        let length = turn(&self.layers.chart, middle(slice.z, slice.height, slice.half))?;
+        Some(Turn { length, most })
     }
-    let length = turn(&profile.layers.chart, middle(slice.z, slice.height, slice.half))?;
-    // The axis that carries the part turns it under the arc.
-    let follows = profile.program.positioner.as_ref().filter(|positioner| positioner.turning == Turning::Follow);
-    let axis = follows.and_then(|positioner| positioner.axes.last());
-    let most = axis.map_or(f64::INFINITY, |axis| (axis.limits[1] - axis.limits[0]) / 360.0);
-    Some(Turn { length, most })
+
+    /// A layer in which every pass lies within one turn.
+    pub(super) fn once<'l>(&self, layer: &'l Layer) -> Cow<'l, Layer> {
+        match self.bands(layer) {
+            Some(bands) => {
+                let (passes, beyond) = (bands.cut(&layer.passes).0, bands.beyond(self.bead_width));
+                Cow::Owned(Layer { passes, beyond, ..layer.clone() })
+            }
+            None => Cow::Borrowed(layer),
+        }
+    }
+
+    /// The bands of a layer; `None` where no pass goes around more than once.
+    pub(crate) fn bands(&self, layer: &Layer) -> Option<Bands> {
+        let turn = turn(self.layers.chart_of(layer), layer.middle())?;
+        self.bands_among(&layer.islands, turn).filter(|bands| layer.passes.iter().any(|pass| bands.goes_on(pass)))
+    }
+
+    /// The bands among some islands; `turn` in mm.
+    fn bands_among(&self, islands: &[Polygon], turn: f64) -> Option<Bands> {
+        let width = self.bead_width;
+        // Beads may reach beyond the outline, and may be moved there.
+        let beyond = DVec2::new(0.0, self.allowance);
+        let band = |island| around::band(island, turn, width);
+        let wider = |band: Bounds| Bounds { min: band.min - beyond, max: band.max + beyond };
+        let bands: Vec<Bounds> = islands.iter().filter_map(band).map(wider).collect();
+        let own = Bands { bands, turn, beyond: self.allowance + width };
+        (turn > width && !own.bands.is_empty()).then_some(own)
+    }
+
+    /// The fill of an island, cut where the next turn begins.
+    pub(super) fn fill_once<'f>(&self, fill: &'f Fill, island: &Polygon, turn: Option<Turn>) -> Cow<'f, Fill> {
+        let islands = std::slice::from_ref(island);
+        let Some(bands) = turn.and_then(|turn| self.bands_among(islands, turn.length)) else {
+            return Cow::Borrowed(fill);
+        };
+        let flat = |path: &Path| Pass {
+            kind: path.kind,
+            closed: path.closed,
+            points: path.points.iter().map(|p| p.extend(0.0)).collect(),
+            width: path.width.clone(),
+            pace: Along::Same(1.0),
+            wait: 0.0,
+        };
+        let once = |stage: &Vec<Path>| {
+            let passes: Vec<Pass> = stage.iter().map(flat).collect();
+            bands.cut(&passes).0.iter().map(cover::path).collect()
+        };
+        Cow::Owned(Fill { stages: fill.stages.iter().map(once).collect(), ..*fill })
+    }
 }
 
 /// Length of a turn of the layer whose middle is at this height (mm); `None` where layers do not close around an axis.
@@ -41,13 +96,7 @@ fn turn(chart: &Chart, middle: f64) -> Option<f64> {
 /// A layer in which every pass lies within one turn: passes that run on are cut where the next turn begins. A layer
 /// without such passes is returned as it is.
 pub fn unrolled_once<'a>(layer: &'a Layer, profile: &Profile) -> Cow<'a, Layer> {
-    match Bands::of_layer(layer, profile) {
-        Some(bands) => {
-            let (passes, beyond) = (bands.cut(&layer.passes).0, bands.beyond(profile.bead.width));
-            Cow::Owned(Layer { passes, beyond, ..layer.clone() })
-        }
-        None => Cow::Borrowed(layer),
-    }
+    Unrolling::of(profile).once(layer)
 }
 
 /// A layer to be drawn unrolled once: passes that go around more than once jump back where the next turn begins, along
@@ -81,27 +130,6 @@ pub fn is_jump(piece: &Segment) -> bool {
     piece.width <= HAIR
 }
 
-/// The fill of an island, cut in the same way.
-pub(super) fn fill_once<'a>(fill: &'a Fill, island: &Polygon, turn: Option<Turn>, profile: &Profile) -> Cow<'a, Fill> {
-    let islands = std::slice::from_ref(island);
-    let Some(bands) = turn.and_then(|turn| Bands::of(islands, turn.length, profile)) else {
-        return Cow::Borrowed(fill);
-    };
-    let flat = |path: &Path| Pass {
-        kind: path.kind,
-        closed: path.closed,
-        points: path.points.iter().map(|p| p.extend(0.0)).collect(),
-        width: path.width.clone(),
-        pace: Along::Same(1.0),
-        wait: 0.0,
-    };
-    let once = |stage: &Vec<Path>| {
-        let passes: Vec<Pass> = stage.iter().map(flat).collect();
-        bands.cut(&passes).0.iter().map(cover::path).collect()
-    };
-    Cow::Owned(Fill { stages: fill.stages.iter().map(once).collect(), ..*fill })
-}
-
 /// The islands of a layer that go all around and have passes that go around more than once.
 pub struct Bands {
     bands: Vec<Bounds>,
@@ -114,20 +142,7 @@ pub struct Bands {
 impl Bands {
     /// The bands of a layer; `None` where no pass goes around more than once.
     pub fn of_layer(layer: &Layer, profile: &Profile) -> Option<Self> {
-        let turn = turn(profile.layers.chart_of(layer), layer.middle())?;
-        Self::of(&layer.islands, turn, profile).filter(|bands| layer.passes.iter().any(|pass| bands.goes_on(pass)))
-    }
-
-    /// The bands among some islands; `turn` in mm.
-    pub(crate) fn of(islands: &[Polygon], turn: f64, profile: &Profile) -> Option<Self> {
-        let width = profile.bead.width;
-        // Beads may reach beyond the outline, and may be moved there.
-        let beyond = DVec2::new(0.0, profile.fill.machining_allowance);
-        let band = |island| around::band(island, turn, width);
-        let wider = |band: Bounds| Bounds { min: band.min - beyond, max: band.max + beyond };
-        let bands: Vec<Bounds> = islands.iter().filter_map(band).map(wider).collect();
-        let own = Self { bands, turn, beyond: profile.fill.machining_allowance + width };
-        (turn > width && !own.bands.is_empty()).then_some(own)
+        Unrolling::of(profile).bands(layer)
     }
 
     fn goes_on(&self, pass: &Pass) -> bool {

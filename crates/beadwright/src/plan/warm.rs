@@ -1,15 +1,16 @@
 //! What heat does to beads: on warm metal they spread, and the layers of a wall rise less.
 
+use super::settings::PlanSettings;
 use super::{Collect, PlanError, Start, plan_at};
 use crate::bead::BeadByHeat;
 use crate::chart::Chart;
-use crate::heat::{Build, HeatSettings, LayerHeat, PassHeat, Site};
+use crate::heat::{Build, HeatSettings, Interpass, LayerHeat, PassHeat, Site};
 use crate::layer::Layer;
 use crate::model::{Mesh, PartRef};
 use crate::pass::{Along, Pass, Segment};
-use crate::profile::Profile;
 use crate::slice::Slab;
 use crate::task::Task;
+use crate::weld::WeldSettings;
 use glam::DVec3;
 use planar::Bounds;
 
@@ -19,6 +20,19 @@ const ROUNDS: usize = 3;
 
 /// Heights that differ by no more than this are the same, mm.
 const SAME: f64 = 1e-6;
+
+/// How a part warms up, and what that does to it.
+#[derive(Debug, Clone)]
+pub(super) struct Warming {
+    /// What the heat model needs; `None` where temperatures are not limited and do nothing to beads, or cannot be computed.
+    pub(super) model: Option<(HeatSettings, WeldSettings)>,
+    /// How beads change with the heat of the metal below, if they do.
+    pub(super) by_heat: Option<BeadByHeat>,
+    /// How warm the metal may be where passes begin, if that is limited.
+    pub(super) interpass: Option<Interpass>,
+    /// Height of a usual layer, mm.
+    pub(super) height: f64,
+}
 
 /// How warm the metal ahead of the torch is at each height of a wall, and how that changes its layers.
 #[derive(Debug, Clone, Default)]
@@ -49,32 +63,32 @@ pub(super) struct Heat {
 
 impl Heat {
     /// The plate before the first layer.
-    pub(super) fn of(profile: &Profile, bounds: &Bounds, slabs: &[Slab], warmth: &Warmth) -> Self {
+    pub(super) fn of(warming: &Warming, bounds: &Bounds, slabs: &[Slab], warmth: &Warmth) -> Self {
         let layers: Vec<(f64, f64)> = slabs.iter().map(|slab| (slab.z, slab.height)).collect();
-        let build = settings(profile).map(|settings| Build::new(&settings, &profile.weld_settings(), bounds, &layers));
+        let build = warming.model.as_ref().map(|(heat, weld)| Build::new(heat, weld, bounds, &layers));
         Self { body: 0, build, warmth: warmth.clone() }
     }
 
     /// What the bodies of a part begin on, each given by its chart and its mesh in the chart's coordinates.
-    pub(super) fn of_bodies<'a>(profile: &Profile, bodies: impl Iterator<Item = (&'a Chart, &'a Mesh)>) -> Self {
-        let build = settings(profile).map(|settings| {
+    pub(super) fn of_bodies<'a>(warming: &Warming, bodies: impl Iterator<Item = (&'a Chart, &'a Mesh)>) -> Self {
+        let build = warming.model.as_ref().map(|(heat, weld)| {
             let site = |(chart, mesh): (&Chart, &Mesh)| {
                 // Around an axis the mesh includes what lies below the first layer.
-                let least = if chart.goes_around() { profile.layers.height / 2.0 } else { f64::NEG_INFINITY };
+                let least = if chart.goes_around() { warming.height / 2.0 } else { f64::NEG_INFINITY };
                 let welded: Vec<DVec3> = mesh.vertices.iter().copied().filter(|p| p.z > least).collect();
                 Site::of(chart, &welded, 0.0)
             };
             let sites: Vec<Option<Site>> = bodies.map(site).collect();
-            Build::in_space(&settings, &profile.weld_settings(), &sites)
+            Build::in_space(heat, weld, &sites)
         });
         Self { build, ..Self::default() }
     }
 
     /// What a part whose layers are not level begins on; `part` is given in the coordinates of its chart.
-    pub(super) fn in_space(part: PartRef, profile: &Profile) -> Option<Self> {
-        let chart = &profile.layers.chart;
+    pub(super) fn in_space(part: PartRef, settings: &PlanSettings) -> Option<Self> {
+        let chart = settings.slicing.chart;
         let PartRef::Mesh { mesh, .. } = part else { return None };
-        (!chart.is_level()).then(|| Self::of_bodies(profile, std::iter::once((chart, mesh))))
+        (!chart.is_level()).then(|| Self::of_bodies(&settings.warming, std::iter::once((chart, mesh))))
     }
 
     /// The same heat, before the layers of the next body.
@@ -91,24 +105,18 @@ impl Heat {
     }
 }
 
-/// The settings of the heat model, where the profile limits temperatures or says what heat does to beads.
-fn settings(profile: &Profile) -> Option<HeatSettings> {
-    let matters = profile.interpass.is_some() || profile.bead.by_heat.is_some();
-    profile.heat_settings().ok().filter(|_| matters)
-}
-
-/// The warmth of a wall, if its profile says what heat does to its layers, and its layers follow their height.
-pub(super) fn predicted<E>(part: PartRef, profile: &Profile, task: &Task) -> Result<Warmth, PlanError<E>> {
+/// The warmth of a wall, if it is known what heat does to its layers, and its layers follow their height.
+pub(super) fn predicted<E>(part: PartRef, settings: &PlanSettings, task: &Task) -> Result<Warmth, PlanError<E>> {
     let mut warmth = Warmth::default();
-    let Some(law) = profile.bead.by_heat else { return Ok(warmth) };
+    let Some(law) = settings.warming.by_heat else { return Ok(warmth) };
     let wall = match part {
-        PartRef::Mesh { .. } => profile.wall_bead()?,
-        PartRef::Curves(..) => Some(profile.single_wall()?),
+        PartRef::Mesh { .. } => settings.wall?,
+        PartRef::Curves(..) => Some(settings.curve_wall?),
     };
     let Some(wall) = wall else { return Ok(warmth) };
     for _ in 0..ROUNDS {
-        let (mut planned, mut heat) = (Collect::default(), Heat::in_space(part, profile));
-        match plan_at(Start::alone(&warmth, heat.as_mut()), "", part, profile, task, &mut planned) {
+        let (mut planned, mut heat) = (Collect::default(), Heat::in_space(part, settings));
+        match plan_at(Start::alone(&warmth, heat.as_mut()), "", part, settings, task, &mut planned) {
             Ok(_) => {}
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled.into()),
             // The plan itself reports the fault.

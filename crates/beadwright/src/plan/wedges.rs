@@ -2,8 +2,8 @@
 
 use crate::chart::Chart;
 use crate::model::Mesh;
-use crate::profile::{LayersSection, Profile};
-use crate::slice::{BATCH, Slab, Slice, Slicer};
+use crate::profile::LayersSection;
+use crate::slice::{BATCH, Slab, Slice, SliceOptions, Slicer};
 use crate::task::{Cancelled, Task};
 use crate::wedge::{THINNEST, TOLERANCE};
 use glam::DVec2;
@@ -13,12 +13,17 @@ use glam::DVec2;
 ///
 /// # Errors
 /// [`Cancelled`].
-pub(super) fn slabs(slabs: Vec<Slab>, mesh: &Mesh, profile: &Profile, task: &Task) -> Result<Vec<Slab>, Cancelled> {
-    let layers = &profile.layers;
+pub(super) fn slabs(
+    slabs: Vec<Slab>,
+    mesh: &Mesh,
+    layers: &LayersSection,
+    options: SliceOptions,
+    task: &Task,
+) -> Result<Vec<Slab>, Cancelled> {
     if !layers.chart.has_wedges() || slabs.is_empty() {
         return Ok(slabs);
     }
-    let slicer = Slicer::of_slabs(mesh, slabs.clone(), profile.slice_options(), task)?;
+    let slicer = Slicer::of_slabs(mesh, slabs.clone(), options, task)?;
     let mut planned = Vec::with_capacity(slabs.len());
     for batch in 0..slabs.len().div_ceil(BATCH) {
         let known = |slice: Slice| Known {

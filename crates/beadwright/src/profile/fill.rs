@@ -82,6 +82,17 @@ fn three() -> u32 {
 }
 
 impl FillSection {
+    /// Angle of the scan lines on a layer, radians from x.
+    pub(crate) fn angle(&self, layer: usize) -> f64 {
+        let turned = match self.raster_turn {
+            // The plan chooses the best angle, which depends on the layer.
+            RasterTurn::Fixed | RasterTurn::Best => 0.0,
+            RasterTurn::Alternate => 90.0 * (layer % 2) as f64,
+            RasterTurn::Increment => self.raster_increment * layer as f64,
+        };
+        ((self.raster_angle + turned) % 180.0).to_radians()
+    }
+
     /// The limits of the numbers; some depend on the bead width `w`, mm.
     pub(super) fn limits(&self, w: f64) -> Vec<Limit> {
         limits! {

@@ -378,12 +378,6 @@ impl Profile {
     /// ```
     pub fn fill_settings(&self, layer: usize) -> FillSettings<'_> {
         let fill = &self.fill;
-        let turned = match fill.raster_turn {
-            // The plan chooses the best angle, which depends on the layer.
-            RasterTurn::Fixed | RasterTurn::Best => 0.0,
-            RasterTurn::Alternate => 90.0 * (layer % 2) as f64,
-            RasterTurn::Increment => fill.raster_increment * layer as f64,
-        };
         FillSettings {
             bead: self.bead(),
             law: &self.bead.law,
@@ -395,7 +389,7 @@ impl Profile {
             infill_density: fill.infill_density,
             solid: None,
             machining_allowance: fill.machining_allowance,
-            raster_angle: ((fill.raster_angle + turned) % 180.0).to_radians(),
+            raster_angle: fill.angle(layer),
             raster_spacing: fill.raster_spacing,
             line_ends: fill.line_ends,
             // If a strategy has the choice, its passes last longer than the start of their arc.
@@ -426,10 +420,11 @@ impl Profile {
         self.posts.iter().filter_map(|post| self.dialects.get(post)?.longest_pass(&self.program)).min()
     }
 
-    /// The height that the passes of a layer (`height`, mm) fill at their pace before metal is shared out, mm.
-    pub(crate) fn usual_height(&self, height: f64) -> f64 {
+    /// Whether the pace of passes is that at which they fill the height of their layer, before metal is shared out;
+    /// otherwise they fill the height of a usual layer.
+    pub(crate) fn fills_layers(&self) -> bool {
         let paces = self.pace_settings();
-        if paces.filled.is_some() || paces.wall.is_some() { height } else { self.layers.height }
+        paces.filled.is_some() || paces.wall.is_some()
     }
 
     /// How the passes of a layer are put in order.

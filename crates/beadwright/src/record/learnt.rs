@@ -7,8 +7,9 @@
 use super::Quantity;
 use super::sealed::{Broken, verify};
 use crate::bead::library::{median, t_95};
+use crate::heat::HeatSection;
 use crate::number::fixed;
-use crate::process::Follow;
+use crate::process::{Follow, Process};
 use crate::profile::Profile;
 use crate::report::sheet::{Row, Sheet};
 use serde::{Deserialize, Serialize};
@@ -218,19 +219,19 @@ impl Learnt {
             seen: Vec::new(),
             unknown: Vec::new(),
         };
-        learnt.feed(&used, profile);
-        learnt.electric(&used, profile);
+        learnt.feed(&used, &profile.process);
+        learnt.electric(&used, &profile.process);
         learnt.speed(&used);
-        learnt.heat(&used, profile);
+        learnt.heat(&used, profile.heat.as_ref());
         learnt
             .unknown
             .push("Width and height of beads: logs do not see them. Give the sheet of the trial beads too.".into());
         learnt
     }
 
-    fn feed(&mut self, used: &[&AsWelded], profile: &Profile) {
+    fn feed(&mut self, used: &[&AsWelded], process: &Process) {
         // Programs command it: another value would move the command, not the feeder.
-        if profile.process.follow == Follow::WireFeed {
+        if process.follow == Follow::WireFeed {
             match Estimate::of(used.iter().filter_map(|pass| pass.ratio(Quantity::Feed))) {
                 None => self.unknown.push(lacks("Wire feed", "wire_feed_speed")),
                 Some(ratio) => self.seen.push(format!(
@@ -243,15 +244,14 @@ impl Learnt {
         match Estimate::of(used.iter().filter_map(|pass| pass.corrected(Quantity::Feed))) {
             None => self.unknown.push(lacks("Wire feed", "wire_feed_speed")),
             Some(after) => {
-                let before = profile.process.wire_feed_speed;
+                let before = process.wire_feed_speed;
                 self.lessons.push(Lesson::new("process.wire_feed_speed", "m/min", Some(before), after));
             }
         }
     }
 
-    fn electric(&mut self, used: &[&AsWelded], profile: &Profile) {
+    fn electric(&mut self, used: &[&AsWelded], process: &Process) {
         let mean = |quantity| Estimate::of(used.iter().filter_map(|pass| pass.corrected(quantity)));
-        let process = &profile.process;
         for (key, quantity, before) in [
             ("process.current", Quantity::Current, process.current),
             ("process.voltage", Quantity::Voltage, process.voltage),
@@ -286,8 +286,8 @@ impl Learnt {
     }
 
     /// Metal warms in proportion to the heat that reaches it.
-    fn heat(&mut self, used: &[&AsWelded], profile: &Profile) {
-        let Some(heat) = &profile.heat else {
+    fn heat(&mut self, used: &[&AsWelded], heat: Option<&HeatSection>) {
+        let Some(heat) = heat else {
             self.unknown.push("Heat: the profile has no section [heat].".into());
             return;
         };

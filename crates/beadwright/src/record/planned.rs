@@ -3,6 +3,7 @@
 use super::{Place, PlannedPass, Settings};
 use crate::export::{Beads, Piece};
 use crate::pass::PassKind;
+use crate::process::{Process, StartStop};
 use crate::profile::Profile;
 use std::collections::HashSet;
 
@@ -12,7 +13,7 @@ pub fn planned(beads: &Beads<'_>) -> Vec<PlannedPass> {
         beads.layers.iter().filter(|layer| layer.lit.before).map(|layer| layer.index + 1).collect();
     let mut passes: Vec<PlannedPass> = Vec::new();
     for pieces in beads.pieces().chunk_by(|a, b| (a.layer, a.pass) == (b.layer, b.pass)) {
-        let pass = pass(pieces, beads.profile);
+        let pass = pass(pieces, &beads.profile.process, &beads.profile.start_stop);
         match passes.last_mut().filter(|_| going_on.contains(&pass.layer)) {
             Some(helix) => {
                 helix.path.extend(pass.path);
@@ -24,14 +25,14 @@ pub fn planned(beads: &Beads<'_>) -> Vec<PlannedPass> {
     passes
 }
 
-fn pass(pieces: &[Piece], profile: &Profile) -> PlannedPass {
+fn pass(pieces: &[Piece], process: &Process, ends: &StartStop) -> PlannedPass {
     let (first, last) = (&pieces[0], &pieces[pieces.len() - 1]);
-    let process = profile.process.at_layer(first.layer - 1);
+    let process = process.at_layer(first.layer - 1);
     let place =
         |piece: &Piece, at, time| Place { at, time, feed: piece.feed * process.wire_feed_speed, speed: piece.speed };
     let end = last.start + last.seconds;
     let path = pieces.iter().map(|piece| place(piece, piece.from, piece.start)).chain([place(last, last.to, end)]);
-    let ends = profile.start_stop.at_layer(first.layer - 1);
+    let ends = ends.at_layer(first.layer - 1);
     let crater = if first.kind == PassKind::Spot { 0.0 } else { ends.crater_fill_time };
     PlannedPass {
         layer: first.layer,

@@ -3,9 +3,9 @@
 
 use super::plot::{Curve, Plot};
 use crate::fill::angle::{self, Curves};
+use crate::fill::{FillSettings, Strategy};
 use crate::layer::Layer;
 use crate::pass::PassKind;
-use crate::profile::Profile;
 
 /// The plots; the x axis is the angle, °. `mark` is the angle that is laid, °.
 pub fn plots(curves: &Curves, mark: Option<f64>) -> [Plot; 3] {
@@ -26,9 +26,8 @@ pub fn plots(curves: &Curves, mark: Option<f64>) -> [Plot; 3] {
 }
 
 /// The plots of one layer as a section of the report; nothing for strategies without scan lines.
-pub(super) fn section(layer: &Layer, profile: &Profile) -> String {
-    let strategy = profile.fill.strategy.strategy();
-    let curves = angle::curves(strategy, &layer.islands, &profile.fill_settings(layer.index));
+pub(super) fn section(layer: &Layer, strategy: &dyn Strategy, settings: &FillSettings) -> String {
+    let curves = angle::curves(strategy, &layer.islands, settings);
     if curves.turns.is_empty() {
         return String::new();
     }

@@ -93,6 +93,7 @@ pub struct Report {
 impl Report {
     /// A report with no layers yet.
     pub fn new(header: &Header, profile: &Profile) -> Self {
+        let positioner = profile.program.positioner.clone();
         Self {
             header: header.clone(),
             profile: profile.clone(),
@@ -102,7 +103,7 @@ impl Report {
             warmth: Vec::new(),
             times: Vec::new(),
             clock: Metrics::new(profile),
-            turns: positioner::Turns::new(profile),
+            turns: positioner.map(|positioner| positioner::Turns::new(positioner, profile.programmer())),
             widths: Range::default(),
             speeds: Range::default(),
             kinds: BTreeSet::new(),
@@ -154,6 +155,7 @@ impl Report {
     /// ([`check::all_findings`](crate::check::all_findings)).
     pub fn finish(self, summary: &Summary, repair: &RepairReport, files: &[String], findings: &[Finding]) -> String {
         let (header, profile) = (&self.header, &self.profile);
+        let middle = profile.fill_settings(self.middle.index);
         let values = [
             ("title", escape(&header.part)),
             ("css", include_str!("page.css").to_owned()),
@@ -163,7 +165,7 @@ impl Report {
             ("kinds", tables::kinds(&self.kinds)),
             ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
             ("process", tables::process(header, profile)),
-            ("angles", angles::section(&self.middle, profile)),
+            ("angles", angles::section(&self.middle, profile.fill.strategy.strategy(), &middle)),
             ("positioner", self.turns.as_ref().map(positioner::Turns::section).unwrap_or_default()),
             ("model", tables::model(repair)),
             ("files", tables::files(files)),

@@ -2,7 +2,6 @@
 
 use super::plot::{Curve, Plot};
 use crate::layer::Layer;
-use crate::profile::Profile;
 use crate::program::{Instruction, Positioner, PositionerAxis, Programmer, Turning};
 use glam::DVec2;
 
@@ -46,10 +45,9 @@ impl Stretch {
 }
 
 impl Turns {
-    /// `None` where no positioner turns the part.
-    pub(super) fn new(profile: &Profile) -> Option<Self> {
-        let positioner = profile.program.positioner.clone()?;
-        Some(Self { positioner, programmer: profile.programmer(), passes: Vec::new() })
+    /// A positioner before the first layer, and the programmer that turns it.
+    pub(super) fn new(positioner: Positioner, programmer: Programmer) -> Self {
+        Self { positioner, programmer, passes: Vec::new() }
     }
 
     /// Takes the next layer.

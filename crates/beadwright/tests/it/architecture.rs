@@ -138,6 +138,30 @@ fn no_modules_use_each_other_in_a_circle() {
     }
 }
 
+/// A profile becomes settings once; only what is called from outside takes it, and these files: they make the settings, of
+/// bodies too, or write programs that are only looked at.
+const SEE_PROFILES: [&str; 3] = ["plan/settings.rs", "plan/bodies.rs", "check/rehearsal.rs"];
+
+#[test]
+fn no_stage_below_the_front_door_sees_a_profile() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut doors = 0;
+    for file in ["plan", "check"].into_iter().flat_map(|folder| rust_files(&source.join(folder))) {
+        if SEE_PROFILES.iter().any(|other| file.ends_with(other)) {
+            continue;
+        }
+        let text = fs::read_to_string(&file).unwrap();
+        let mut signature = "";
+        for line in text.lines().filter(|line| !line.trim_start().starts_with("//")) {
+            signature = if line.contains("fn ") { line.trim_start() } else { signature };
+            let sees = line.contains(": &Profile") || line.contains("&'a Profile");
+            assert!(!sees || signature.starts_with("pub fn "), "{}: {signature}", file.display());
+            doors += usize::from(sees);
+        }
+    }
+    assert!(doors > 10, "{doors}");
+}
+
 /// The modules of a crate, and which of its other modules each one uses.
 fn used_modules(name: &str) -> BTreeMap<String, BTreeSet<String>> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join(name).join("src");

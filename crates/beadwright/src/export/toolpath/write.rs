@@ -3,7 +3,7 @@
 use super::style::{Styles, Values};
 use super::{OWN, UNIT_MM, layer};
 use crate::export::archive::{Archive, MODEL, relationships};
-use crate::export::walk::{self, Run};
+use crate::export::walk::Run;
 use crate::export::{Beads, ExportError};
 use crate::model::package::{PRODUCTION, TOOLPATH};
 use crate::number::fixed;
@@ -16,7 +16,7 @@ pub(super) fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     if let Some(chart) = beads.profile.layers.charts().find(|chart| !chart.is_level()) {
         return Err(ExportError::NotLevel(chart.name()));
     }
-    let runs = walk::runs(beads.layers, beads.profile);
+    let runs = beads.runs();
     let (values, tags): (Vec<Vec<Values>>, Vec<Vec<u32>>) = runs.iter().map(layer::lines).unzip();
     let nominal = [beads.profile.bead.width, beads.profile.process.deposition_speed];
     let ids = Ids::of(beads);

@@ -12,19 +12,17 @@
 mod rim;
 mod share;
 
-pub(super) use share::share;
+pub(super) use share::{Sharing, share};
 
-use super::emitter::lifted;
-use super::filled::{Filled, fill_planned};
+use super::filled::{Filled, Filling, fill_planned};
 use super::scan_lines::Planned;
-use super::turns;
-use super::{MAX_LAYERS, deposit_settings, middle};
+use super::settings::PlanSettings;
+use super::{MAX_LAYERS, middle};
 use crate::deposit::Stack;
 use crate::fill::{Fill, Strategy};
 use crate::layer::{self, Layer};
 use crate::model::Mesh;
-use crate::profile::Profile;
-use crate::slice::{BATCH, Slab, Slice, Slicer};
+use crate::slice::{BATCH, Slab, Slice};
 use crate::task::{Cancelled, Task};
 use glam::DVec2;
 use planar::{Polygon, Region, Ring};
@@ -41,23 +39,24 @@ const THICKNESS: std::ops::RangeInclusive<f64> = 0.5..=1.25;
 /// [`Cancelled`].
 pub(super) fn slabs(
     mesh: &Mesh,
-    strategy: &dyn Strategy,
-    profile: &Profile,
+    sharing: &Sharing,
+    settings: &PlanSettings,
     task: &Task,
 ) -> Result<Vec<Slab>, Cancelled> {
-    let (top, height) = (mesh.bounds().1.z.max(0.0), profile.layers.height);
+    let (top, height) = (mesh.bounds().1.z.max(0.0), sharing.height);
     let count = ((top / height) as usize).clamp(1, HEIGHTS);
     let apart = top / count as f64;
     // Each slice is cut in the middle of its slab.
     let looked_at = (0..count).map(|k| Slab { z: (k as f64 + 0.5) * apart + 0.5 * height, height }).collect();
-    let slicer = Slicer::of_slabs(mesh, looked_at, profile.slice_options(), task)?.on(&profile.layers.chart);
+    let slicer = settings.slicing.slicer(mesh, looked_at, task)?;
     const { assert!(HEIGHTS <= BATCH) };
     let slices = slicer.batch(0, task)?;
     let alike: Vec<usize> =
         (0..count).map(|k| (0..k).find(|&other| are_alike(&slices[other], &slices[k])).unwrap_or(k)).collect();
+    let (strategy, middle) = (settings.strategy.strategy(), middle(mesh));
     let filled = |(k, slice): (usize, Slice)| -> Result<Option<f64>, Cancelled> {
         task.check()?;
-        Ok((alike[k] == k).then(|| rise(filled(slice, strategy, profile, middle(mesh)), profile)).flatten())
+        Ok((alike[k] == k).then(|| rise(filled(slice, strategy, &settings.filling, middle), sharing)).flatten())
     };
     let rises = slices.into_par_iter().enumerate().map(filled).collect::<Result<Vec<_>, _>>()?;
     let known: Vec<(f64, f64)> =
@@ -76,17 +75,17 @@ fn are_alike(a: &Slice, b: &Slice) -> bool {
 }
 
 /// A slice with its passes. The direction of scan lines hardly matters for the metal.
-fn filled(slice: Slice, strategy: &dyn Strategy, profile: &Profile, middle: DVec2) -> Layer {
-    let turn = turns::turn_of(&slice, profile);
+fn filled(slice: Slice, strategy: &dyn Strategy, filling: &Filling, middle: DVec2) -> Layer {
+    let turn = filling.turn(&slice);
     let planned = Planned { slice, raster_angle: None, solid: None };
-    let Filled { slice, fills, .. } = fill_planned(&planned, strategy, profile, middle);
+    let Filled { slice, fills, .. } = fill_planned(&planned, strategy, filling, middle);
     let laid = slice.islands.into_iter().zip(&fills).filter(|(_, fill)| !fill.is_empty());
-    let once = |(island, fill)| turns::fill_once(fill, &island, turn, profile).into_owned();
+    let once = |(island, fill)| filling.unrolling.fill_once(fill, &island, turn).into_owned();
     let (islands, fills): (Vec<Polygon>, Vec<Fill>) =
         laid.map(|(island, fill)| (island.clone(), once((island, fill)))).unzip();
     let paths = fills.into_iter().flat_map(|fill| fill.stages.into_iter().flatten()).collect();
-    let height = profile.layers.height;
-    let passes = lifted(paths, slice.index, (0.0, height), profile);
+    let height = filling.height;
+    let passes = filling.laying.lifted(paths, slice.index, (0.0, height));
     Layer { height, islands, passes, ..Layer::default() }
 }
 
@@ -95,17 +94,17 @@ const REPEATED: usize = 6;
 
 /// Height of a layer on others like it, mm, at which its beads hold the metal that they need; `None` for one without
 /// beads.
-fn rise(mut layer: Layer, profile: &Profile) -> Option<f64> {
-    let (region, bounds) = (share::region(&layer, profile), layer::bounds(std::slice::from_ref(&layer))?);
-    let mut below = Stack::new(&bounds, deposit_settings(profile).fitted_to(&bounds, REPEATED));
+fn rise(mut layer: Layer, sharing: &Sharing) -> Option<f64> {
+    let (region, bounds) = (share::region(&layer, sharing), layer::bounds(std::slice::from_ref(&layer))?);
+    let mut below = Stack::new(&bounds, sharing.deposit.fitted_to(&bounds, REPEATED));
     let passes = layer.passes.clone();
     for _ in 0..REPEATED {
         let bottom = layer.z;
         layer.passes.clone_from(&passes);
         layer.z = bottom + layer.height;
-        layer.height = needed(&layer, &below, &region, profile)?;
+        layer.height = needed(&layer, &below, &region, sharing)?;
         layer.z = bottom + layer.height;
-        share::share(&mut layer, Some(&below), None, profile);
+        share::share(&mut layer, Some(&below), None, sharing);
         below.weld(&layer.passes);
     }
     Some(layer.height)
@@ -120,8 +119,8 @@ const FILLED: f64 = 0.35;
 /// and the lowest height at which no more metal is laid than needed, since a bead cannot hold less than 1 /
 /// [`share::MOST`] of its own metal. If too much is laid at the former height, the layer is made higher, until it takes
 /// up the surplus.
-fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> Option<f64> {
-    let shares = share::shares(layer, Some(below), None, region, profile);
+fn needed(layer: &Layer, below: &Stack, region: &Region, sharing: &Sharing) -> Option<f64> {
+    let shares = share::shares(layer, Some(below), None, region, sharing);
     let mut pieces: Vec<(f64, f64)> =
         shares.iter().flat_map(|share| share.needs.iter().copied().zip(share.held.iter().copied())).collect();
     pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -143,7 +142,7 @@ fn needed(layer: &Layer, below: &Stack, region: &Region, profile: &Profile) -> O
     } else {
         (filled * root(surplus, filled, most)).sqrt()
     };
-    let usual = profile.layers.height;
+    let usual = sharing.height;
     Some((layer.height / need).clamp(THICKNESS.start() * usual, THICKNESS.end() * usual))
 }
 

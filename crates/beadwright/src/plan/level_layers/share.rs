@@ -1,12 +1,12 @@
 //! Metal where the slice needs it.
 
 use super::rim::Rim;
+use crate::bead::Law;
 use crate::deposit::field::Grid;
-use crate::deposit::{MOST_POINTS, Nominal, RIM, Stack};
+use crate::deposit::{DepositSettings, MOST_POINTS, Nominal, RIM, Stack};
 use crate::fill::sound;
 use crate::layer::{self, Layer};
 use crate::pass::{Along, Pass, PassKind, Segment};
-use crate::profile::Profile;
 use crate::wedge::Wedge;
 use glam::DVec2;
 use planar::{Join, Region, polyline};
@@ -32,6 +32,19 @@ const GAIN: f64 = 0.5;
 /// Limits of the height to which a place is filled, in heights of the layer.
 const WANTED: std::ops::RangeInclusive<f64> = 0.5..=1.5;
 
+/// How metal is shared out within layers.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::plan) struct Sharing<'p> {
+    /// The nominal bead, and how the model builds up what lies below.
+    pub(in crate::plan) deposit: DepositSettings,
+    /// Height of a wide layer, mm.
+    pub(in crate::plan) height: f64,
+    /// How a bead's height follows its width.
+    pub(in crate::plan) law: &'p Law,
+    /// The narrowest and the widest bead, mm.
+    pub(in crate::plan) width_limits: (f64, f64),
+}
+
 /// A pass in pieces, with the metal (mm³) that each holds, and the metal that a piece and those around it need, as a
 /// multiple of what they hold.
 pub(super) struct Share {
@@ -44,25 +57,21 @@ fn metal_of(piece: &Segment, nominal: &Nominal) -> f64 {
     piece.length() * nominal.bead_at(piece.width, piece.pace).area()
 }
 
-fn nominal(profile: &Profile) -> Nominal {
-    crate::plan::deposit_settings(profile).nominal
-}
-
 /// What the passes of a layer hold and need on the metal `below`, or, without it, on a layer that came out as planned.
 pub(super) fn shares(
     layer: &Layer,
     below: Option<&Stack>,
     wedge: Option<&Wedge<'_>>,
     region: &Region,
-    profile: &Profile,
+    sharing: &Sharing,
 ) -> Vec<Share> {
-    let nominal = nominal(profile);
+    let nominal = sharing.deposit.nominal;
     let width = nominal.bead.width;
     // A dot already holds what its place needs.
     let pieces = |pass: &Pass| if pass.kind == PassKind::Spot { Vec::new() } else { cut(pass, PIECE * width) };
     let pieces: Vec<Vec<Segment>> = layer.passes.iter().map(pieces).collect();
     // Beads side by side are taken to fill layers.height, whatever the profile's bead would give.
-    let wide = nominal.bead.rise(profile.stepover()) / profile.layers.height;
+    let wide = nominal.rise / sharing.height;
     let ground = |place| below?.height_at(place).map(|ground| ground / wide);
     let own = |place| wedge.map_or(layer.height, |wedge| wedge.own(place));
     let strips = strips(layer, own, ground, region, pieces.iter().flatten(), width);
@@ -83,9 +92,9 @@ pub(super) fn shares(
 }
 
 /// What the beads of a layer should fill: its islands, including what is milled off.
-pub(super) fn region(layer: &Layer, profile: &Profile) -> Region {
+pub(super) fn region(layer: &Layer, sharing: &Sharing) -> Region {
     let region = Region::from_normalised(layer.islands.clone());
-    match profile.fill.machining_allowance {
+    match sharing.deposit.machining_allowance {
         allowance if allowance > 0.0 => region.offset(allowance, Join::ROUND),
         _ => region,
     }
@@ -93,10 +102,10 @@ pub(super) fn region(layer: &Layer, profile: &Profile) -> Region {
 
 /// Shares out the metal of a layer: each piece of a pass is laid at the pace that fills the strip of the slice nearest
 /// to it, from the metal below; it is as wide as the bead law gives, and stays inside the outline.
-pub(in crate::plan) fn share(layer: &mut Layer, below: Option<&Stack>, wedge: Option<&Wedge<'_>>, profile: &Profile) {
-    let (nominal, region) = (nominal(profile), region(layer, profile));
-    let (shares, rim) = (shares(layer, below, wedge, &region, profile), Rim::of(&region));
-    let (narrowest, widest) = profile.fill_settings(layer.index).wall.width_limits;
+pub(in crate::plan) fn share(layer: &mut Layer, below: Option<&Stack>, wedge: Option<&Wedge<'_>>, sharing: &Sharing) {
+    let (nominal, region) = (sharing.deposit.nominal, region(layer, sharing));
+    let (shares, rim) = (shares(layer, below, wedge, &region, sharing), Rim::of(&region));
+    let (narrowest, widest) = sharing.width_limits;
     let laid = |(pass, share): (&Pass, &Share)| {
         let Share { pieces, held, needs } = share;
         if pieces.is_empty() {
@@ -105,9 +114,9 @@ pub(in crate::plan) fn share(layer: &mut Layer, below: Option<&Stack>, wedge: Op
         let laid = |(piece, need): (&Segment, f64)| {
             let bead = nominal.bead_at(piece.width, piece.pace);
             let (narrowest, widest) = (piece.width.min(narrowest), piece.width.max(widest));
-            let metal = |width: f64| profile.bead.law.bead(&bead, width).area() / bead.area();
+            let metal = |width: f64| sharing.law.bead(&bead, width).area() / bead.area();
             let factor = need.clamp(MOST.recip(), MOST).clamp(metal(narrowest), metal(widest));
-            let width = profile.bead.law.width_of_area(&bead, factor * bead.area()).clamp(narrowest, widest);
+            let width = sharing.law.width_of_area(&bead, factor * bead.area()).clamp(narrowest, widest);
             Segment { width, pace: piece.pace / factor, ..*piece }
         };
         let wider: Vec<Segment> = pieces.iter().zip(needs.iter().copied()).map(laid).collect();

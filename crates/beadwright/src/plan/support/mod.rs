@@ -4,11 +4,11 @@ mod block;
 mod hanging;
 mod metal;
 
+use crate::chart::Chart;
 use crate::layer::Layer;
 use crate::pass::Pass;
 use crate::plan::charted::Across;
-use crate::plan::turns::{Bands, unrolled_once};
-use crate::profile::Profile;
+use crate::plan::turns::Unrolling;
 use crate::slice::Half;
 use crate::warning::{Warning, WarningKind};
 use glam::DVec2;
@@ -48,6 +48,16 @@ pub(super) struct Support {
     footing: Footing,
 }
 
+/// What counts as metal below a pass.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ground<'p> {
+    pub(super) unrolling: Unrolling<'p>,
+    /// Whether layers are filled completely; sparse ones support the next as if they were.
+    pub(super) is_solid: bool,
+    /// Whether beads are printed, which bridge gaps.
+    pub(super) prints: bool,
+}
+
 /// What the layers of a body lie on, apart from one another.
 #[derive(Debug, Clone)]
 pub(super) struct Footing {
@@ -84,9 +94,9 @@ impl Support {
     }
 
     /// Outlines of the metal of other bodies that lies under a layer.
-    pub(super) fn there(&self, layer: &Layer, profile: &Profile) -> Vec<Polygon> {
+    pub(super) fn there(&self, layer: &Layer, chart: &Chart) -> Vec<Polygon> {
         let Some(under) = self.footing.metal.get(layer.index) else { return Vec::new() };
-        match Across::new(&profile.layers.chart, under.height, layer.middle()) {
+        match Across::new(chart, under.height, layer.middle()) {
             Some(across) => across.islands(&under.outlines),
             None => under.outlines.clone(),
         }
@@ -95,9 +105,9 @@ impl Support {
     /// Warns of passes that lie in the air, takes out small overhanging islands, and remembers the layer for the next
     /// one. Sparse layers support the next as if they were filled, and printed beads bridge gaps. The upper layer of a
     /// pair lies on the lower one and on what lies below that.
-    pub(super) fn judge(&mut self, layer: &mut Layer, profile: &Profile) {
-        let (width, solid) = (profile.bead.width, profile.fill.infill_density >= 1.0);
-        if let Some(across) = Across::new(&profile.layers.chart, self.middle, layer.middle()) {
+    pub(super) fn judge(&mut self, layer: &mut Layer, ground: &Ground) {
+        let Unrolling { layers, bead_width: width, .. } = ground.unrolling;
+        if let Some(across) = Across::new(&layers.chart, self.middle, layer.middle()) {
             self.passes = across.passes(&self.passes);
             self.islands = across.islands(&self.islands);
             self.left_out = across.islands(&self.left_out);
@@ -108,13 +118,13 @@ impl Support {
         }
         let alike = self.left_out.is_empty() && self.islands == layer.islands;
         // What begins within the first layer only shows in the next one.
-        let near_plate = layer.z - layer.height <= SAGS * profile.layers.height;
+        let near_plate = layer.z - layer.height <= SAGS * layers.height;
         let on_plate = self.footing.plate && (!self.begun || near_plate);
         if !on_plate && !alike {
-            let (metal, there) = (Metal::of(&self.passes, width), self.there(layer, profile));
-            let below = if solid { &there[..] } else { &[&there[..], &self.islands[..]].concat()[..] };
+            let (metal, there) = (Metal::of(&self.passes, width), self.there(layer, &layers.chart));
+            let below = if ground.is_solid { &there[..] } else { &[&there[..], &self.islands[..]].concat()[..] };
             let within = |p: DVec2| below.iter().any(|island| island.contains(p));
-            let bands = Bands::of_layer(layer, profile);
+            let bands = ground.unrolling.bands(layer);
             let once = |p: DVec2| bands.as_ref().map_or(p, |bands| bands.place(p));
             // From one turn of the seam to the next no bead goes on.
             let room = |p: DVec2, ahead: DVec2, reach: f64| {
@@ -122,14 +132,14 @@ impl Support {
                 let room = metal.room(p, ahead, reach).map(|room| if bands.is_none() { room } else { 0.0 });
                 room.or_else(|| within(p).then_some(0.0))
             };
-            let bridge = if profile.prints() { f64::INFINITY } else { BRIDGE * width };
+            let bridge = if ground.prints { f64::INFINITY } else { BRIDGE * width };
             let places = Places { step: width / SAMPLES, bridge, clear: CLEAR * width };
             let hanging: Vec<Option<Hanging>> = layer.passes.iter().map(|pass| hanging(pass, places, room)).collect();
             self.left_out = self.take_out(layer, &hanging, width, once);
         } else if !alike {
             self.left_out.clear();
         }
-        let passes = std::mem::replace(&mut self.passes, unrolled_once(layer, profile).passes.clone());
+        let passes = std::mem::replace(&mut self.passes, ground.unrolling.once(layer).passes.clone());
         self.before = (passes, std::mem::replace(&mut self.islands, layer.islands.clone()));
         self.middle = layer.middle();
         self.begun |= !layer.passes.is_empty();
