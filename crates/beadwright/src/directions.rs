@@ -35,8 +35,9 @@ pub enum Outcome {
 /// Divisions of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// Those that can be welded come first, and of these the ones with less overhang, then the cheaper ones. The last is the
-    /// whole part in level layers, which is planned only if no other can be welded.
+    /// Those that can be welded come first; of these the ones with less overhang, without metal that must be there already,
+    /// with less left bare, and then the cheaper ones. The last is the whole part in level layers, which is planned only if no
+    /// other can be welded.
     pub divisions: Vec<Tried>,
     /// If nothing can be welded: what could be if its layers may lie farther from level than [`Settings::tilt`].
     pub tilted: Option<Tried>,
@@ -90,6 +91,8 @@ pub fn tried(name: &str, mesh: &Mesh, profile: &Profile, settings: Settings, tas
 const MOST_TILT: f64 = 180.0;
 /// Overhangs that differ by less than this are alike, mm².
 const ALIKE: f64 = 200.0;
+/// Shares left bare that differ by less than this are alike.
+const BARE: f64 = 0.02;
 
 impl Tried {
     fn untried(name: &str, division: Division) -> Self {
@@ -116,15 +119,26 @@ impl Tried {
         matches!(self.outcome, Outcome::Planned(_))
     }
 
-    /// What can be welded comes first, then what leaves less overhang, then what costs less or takes less time.
+    /// What can be welded comes first; of that, what leaves less overhang, needs no other metal, covers more, costs less or takes
+    /// less time.
     fn before(&self, other: &Self) -> Ordering {
-        let overhang = |tried: &Self| (tried.division.hanging / ALIKE).floor();
-        let price = |tried: &Self| match &tried.outcome {
-            Outcome::Planned(metrics) => metrics.cost.unwrap_or(metrics.total_time_s),
-            Outcome::Refused(_) | Outcome::Untried => 0.0,
+        let rank = |tried: &Self| {
+            let metrics = match &tried.outcome {
+                Outcome::Planned(metrics) => Some(metrics),
+                Outcome::Refused(_) | Outcome::Untried => None,
+            };
+            let price = |metrics: &Metrics| metrics.cost.unwrap_or(metrics.total_time_s);
+            let on_stock = tried.bodies.iter().any(|body| body.on_stock);
+            [
+                f64::from(u8::from(metrics.is_none())),
+                (tried.division.hanging / ALIKE).floor(),
+                f64::from(u8::from(on_stock)),
+                metrics.map_or(0.0, |metrics| ((1.0 - metrics.coverage()) / BARE).floor()),
+                metrics.map_or(0.0, |metrics| price(metrics)),
+            ]
         };
-        let planned = other.is_planned().cmp(&self.is_planned());
-        planned.then(overhang(self).total_cmp(&overhang(other))).then(price(self).total_cmp(&price(other)))
+        let pairs = rank(self).into_iter().zip(rank(other));
+        pairs.fold(Ordering::Equal, |order, (own, other)| order.then(own.total_cmp(&other)))
     }
 }
 

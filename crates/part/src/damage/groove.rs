@@ -5,7 +5,7 @@
 
 use super::found::Found;
 use super::mouth::{self, Face};
-use super::{Reason, Settings, Unfilled};
+use super::{Reason, Settings, Unfilled, tips};
 use crate::chart::surface::{self, Grid};
 use crate::chart::warp::{self, WarpError};
 use crate::chart::{Chart, Plane, Surface, SurfaceError};
@@ -73,6 +73,8 @@ pub(super) struct Groove {
     open: Vec<bool>,
     /// The part's surface.
     top: Surface,
+    /// The same, raised around tips narrower than a bead: up to here metal is welded.
+    raised: Surface,
     /// What is welded on.
     floor: Arc<Surface>,
 }
@@ -115,11 +117,16 @@ impl Groove {
         }
         let (floor, kept) = dug.beside(&side, shape.rise());
         let Dug { open, .. } = dug;
+        // Heights above what layers are parallel to.
+        let level = |k: usize| if shape == Shape::Followed { floor[k] } else { Some(0.0) };
+        let heights: Vec<Option<f64>> = (0..top.len()).map(|k| Some(top[k]? - level(k)?)).collect();
+        let raised = tips::widened(&grid, &heights, &open, bead).into_iter().enumerate();
+        let raised: Vec<Option<f64>> = raised.map(|(k, height)| Some(height? + level(k)?)).collect();
         let only =
             |heights: Vec<Option<f64>>| heights.into_iter().zip(&kept).map(|(h, kept)| h.filter(|_| *kept)).collect();
-        let (top, floor) = (only(top), extended(&grid, only(floor), shape.rise()));
-        let (top, floor) = (grid.surface(top)?, grid.surface(floor)?);
-        Ok(Self { grid, shape, up, ground, open, top, floor: Arc::new(floor.rounded()) })
+        let floor = grid.surface(extended(&grid, only(floor), shape.rise()))?;
+        let (top, raised) = (grid.surface(only(top))?, grid.surface(only(raised))?);
+        Ok(Self { grid, shape, up, ground, open, top, raised, floor: Arc::new(floor.rounded()) })
     }
 
     /// Whether most of a place is hidden by what lies over it.
@@ -175,7 +182,7 @@ impl Groove {
         Ok(Region::from_rings(&rings, FillRule::NonZero))
     }
 
-    /// What is welded: from the floor up to the part's surface and what is to be milled off, closed, mm.
+    /// What is welded: from the floor up to the part's surface, more around its tips, and what is to be milled off, closed, mm.
     ///
     /// # Errors
     /// [`WarpError`].
@@ -185,7 +192,10 @@ impl Groove {
         for polygon in polygons {
             let Solid { vertices, triangles } = Solid::extrude(polygon, 0.0, 1.0);
             let mut flat = warp::divided(&Mesh { vertices, triangles, ..Mesh::default() }, self.grid.step, task)?;
-            flat.vertices.iter_mut().for_each(|p| p.z *= self.depth(p.truncate()).max(0.0) + over);
+            flat.vertices.iter_mut().for_each(|p| {
+                let place = p.truncate();
+                p.z *= (self.raised.height(place) - self.floor.height(place)).max(0.0) + over;
+            });
             let is_steep = |p: &&DVec3| self.floor.stretch(p.truncate()) > FOLLOWED;
             if let Some(p) = flat.vertices.iter().find(is_steep).filter(|_| self.shape == Shape::Followed) {
                 let stretch = self.floor.stretch(p.truncate());
@@ -244,6 +254,12 @@ impl Groove {
         let volume = milled.triangles.iter().map(volume).sum();
         milled.vertices.iter_mut().zip(&cuts).for_each(|(vertex, cut)| *vertex -= self.up * *cut);
         Ok((milled, volume))
+    }
+
+    /// What is welded around tips beside the part, mm³.
+    pub(super) fn beside_tips(&self, polygons: &[Polygon]) -> f64 {
+        let more = self.places(polygons).map(|p| (self.raised.height(p) - self.top.height(p)).max(0.0));
+        more.sum::<f64>() * self.grid.step.powi(2)
     }
 
     /// How the layers of what is welded lie.
@@ -496,12 +512,12 @@ fn neighbours(grid: &Grid, k: usize) -> impl Iterator<Item = (usize, f64)> {
 }
 
 /// The place some steps from another, where the grid has it, and how far away it is, mm.
-fn beyond(grid: &Grid, k: usize, way: (isize, isize)) -> Option<(usize, f64)> {
+pub(super) fn beyond(grid: &Grid, k: usize, way: (isize, isize)) -> Option<(usize, f64)> {
     let column = (k % grid.columns).checked_add_signed(way.0).filter(|column| *column < grid.columns)?;
     let row = (k / grid.columns).checked_add_signed(way.1).filter(|row| *row < grid.rows)?;
     Some((row * grid.columns + column, away(way, grid.step)))
 }
 
-fn away(way: (isize, isize), step: f64) -> f64 {
+pub(super) fn away(way: (isize, isize), step: f64) -> f64 {
     DVec2::new(way.0 as f64, way.1 as f64).length() * step
 }

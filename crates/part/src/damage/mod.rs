@@ -8,6 +8,7 @@ mod found;
 mod groove;
 mod mouth;
 mod moved;
+mod tips;
 
 use crate::chart::warp::WarpError;
 use crate::chart::{Chart, SurfaceError};
@@ -292,7 +293,7 @@ impl Metal {
             let (_, milled) = groove.milled(scan, &polygons, settings, task)?;
             let bare = groove.bare(found, &polygons);
             let over = settings.over() * polygons.iter().map(Polygon::area).sum::<f64>();
-            let missing = (mesh.volume() - milled - over).max(0.0);
+            let missing = (mesh.volume() - milled - over - groove.beside_tips(&polygons)).max(0.0);
             let unresolved = unresolved(found, up, (missing, bare), settings);
             let (place, depth) = (found.place, found.depth);
             let damage = Damage { mesh, chart, up, place, depth, missing, milled, bare, unresolved };
