@@ -1,12 +1,12 @@
 //! `beadwright directions`: finds build directions for the pieces of a model and writes them as a file of bodies for
 //! `plan --bodies`.
 
-use crate::{file, model, profile, progress, say};
+use crate::{file, model, plan, profile, progress, say};
 use anyhow::Context;
 use beadwright::chart::Chart;
-use beadwright::directions::{Division, Found, Outcome, Settings, Tried, tried};
+use beadwright::directions::{Division, Found, Outcome, Settings, Tried, tried, untried};
 use beadwright::profile::{Body, Profile};
-use beadwright::{Mesh, Task};
+use beadwright::{Part, Task};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -21,6 +21,9 @@ pub(crate) struct Arguments {
     /// Beyond 90 only branches on branches go, in layers around the one that carries them.
     #[arg(long, value_name = "DEG", default_value_t = TILT, value_parser = parse_tilt)]
     tilt: f64,
+    /// List the divisions without planning each for trial, which takes as long as planning the part several times.
+    #[arg(long)]
+    no_trial: bool,
     /// Which of the divisions found to write, counted from 1.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..))]
     choice: u64,
@@ -31,15 +34,24 @@ pub(crate) struct Arguments {
     wanted: profile::Wanted,
 }
 
-/// Bodies for a part whose directions are found as it is planned: the best of those that can be welded.
-pub(crate) fn bodies(part: &str, mesh: &Mesh, profile: &Profile, task: &Task) -> anyhow::Result<Vec<Body>> {
+/// Bodies for a part whose directions are found as it is planned: the best of those that can be welded, or, if none can, those
+/// whose plan says why; and a sentence about them.
+pub(crate) fn bodies(
+    name: &str,
+    part: &Part,
+    (profile, kept): (&Profile, bool),
+    task: &Task,
+) -> anyhow::Result<(Vec<Body>, String)> {
+    anyhow::ensure!(
+        profile.layers.are_level() && profile.layers.bodies.is_empty(),
+        "--directions auto: the profile says how layers lie (layers.chart, layers.bodies): leave that out."
+    );
     let settings = Settings { lean: LEAN, tilt: TILT, bead: profile.bead.width };
-    let Found { divisions, .. } = tried(part, mesh, profile, settings, task)?;
-    let can = divisions.into_iter().find(|found| found.is_planned() || found.outcome == Outcome::Untried);
-    let can = can.with_context(|| {
-        format!("--directions auto: no division of {part} can be welded. `beadwright directions` says why, and writes bodies that can be edited.")
-    })?;
-    Ok(can.bodies)
+    let Found { divisions, .. } = tried(name, part, profile, kept, settings, task)?;
+    let best = divisions.into_iter().next().with_context(|| name.to_owned())?;
+    let sentence = format!("Directions were found while planning (--directions auto): {}.", sentence(&best));
+    let bodies = if best.is_level() { Vec::new() } else { best.bodies };
+    Ok((bodies, sentence))
 }
 
 /// Largest angles of walls from the direction in which they are built, and of directions from the vertical, °.
@@ -65,34 +77,41 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let profile = profile::load(name, &arguments.wanted.set)?;
     let (task, bar) = progress::task()?;
     let import = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?;
+    let (name, open_edges) = (arguments.model.part(), import.repair.open_edges);
     let settings = Settings { lean: arguments.lean, tilt: arguments.tilt, bead: profile.bead.width };
-    let Found { divisions: mut found, tilted } =
-        tried(&arguments.model.part(), &import.mesh, &profile, settings, &task)?;
+    let part = Part::Mesh(import);
+    let Found { divisions, level, tilted } = if arguments.no_trial {
+        untried(&name, &part, settings, &task)?
+    } else {
+        part.mesh().map_or(Ok(()), |mesh| plan::say_size(mesh, &profile))?;
+        tried(&name, &part, &profile, false, settings, &task)?
+    };
     bar.finish_and_clear();
     let model = &arguments.model.model;
-    let level = found.pop().with_context(|| model.display().to_string())?;
     let mut out = say::done(arguments.output.is_none());
     let lean = arguments.lean;
-    writeln!(out, "level layers: {:.1} cm² overhang by more than {lean}°", level.division.hanging / 100.0)?;
-    // Level layers are planned only where no division can be welded.
-    if found.is_empty() || level.is_planned() {
-        found.insert(0, level);
-    }
+    writeln!(out, "level layers: {:.1} cm² overhang by more than {lean}°", level / 100.0)?;
+    // Level layers are offered where nothing else is found, or nothing else can be welded.
+    let only = divisions.len() == 1;
+    let is_offered = |found: &Tried| only || !found.is_level() || found.is_planned();
+    let found: Vec<Tried> = divisions.into_iter().filter(is_offered).collect();
     for (number, found) in found.iter().enumerate() {
-        writeln!(out, "{}. {}{}", number + 1, sentence(&found.division), ending(found))?;
+        writeln!(out, "{}. {}{}", number + 1, sentence(found), ending(found))?;
     }
-    if !found[0].is_planned() {
-        writeln!(
-            out,
-            "None of them can be welded as it is. The file can be edited, and `plan --preform` adds metal below overhangs."
-        )?;
+    if only {
+        writeln!(out, "No other direction avoids much of it.")?;
+    }
+    if let Some(Outcome::Refused(_)) = found.first().map(|found| &found.outcome) {
+        let hangs = |found: &Tried| matches!(&found.outcome, Outcome::Refused(why) if why.contains(HANGS));
+        let preform = if found.iter().any(hangs) { ", or add metal below overhangs (plan --preform)" } else { "" };
+        writeln!(out, "So the part cannot be welded as it is. Edit the bodies{preform}.")?;
     }
     if let Some(tilted) = tilted {
         let (tilt, pieces) = (tilted.division.tilt.ceil(), tilted.bodies.len());
         writeln!(out, "As {pieces} bodies it could be welded with --tilt {tilt}, if the part can be turned so far.")?;
     }
-    if import.repair.open_edges > 0 {
-        writeln!(out, "The surface is open ({} edges); bodies are made of solids.", import.repair.open_edges)?;
+    if open_edges > 0 {
+        writeln!(out, "The surface is open ({open_edges} edges); bodies are made of solids.")?;
     }
     let Some(Tried { bodies, .. }) = found.get(arguments.choice as usize - 1) else {
         anyhow::bail!("--choice {}: there are {} to choose from", arguments.choice, found.len());
@@ -116,21 +135,21 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn sentence(division: &Division) -> String {
-    let bodies = match &division.pieces[..] {
+/// What is said of passes with nothing below.
+const HANGS: &str = "over nothing";
+
+fn sentence(found: &Tried) -> String {
+    let Division { pieces, hanging, tilt, lean } = &found.division;
+    let bodies = match &pieces[..] {
+        [_] if found.is_level() => return "level layers".to_owned(),
         [piece] => match &piece.chart {
             Chart::Guide(guide) => format!("1 body along its middle line, {:.0} mm long", guide.length()),
-            chart if chart.is_level() => "level layers".to_owned(),
             chart => format!("1 body on {chart}"),
         },
         pieces => format!("{} bodies", pieces.len()),
     };
-    let stock = if division.pieces.iter().any(|piece| piece.on_stock) {
-        ", on metal that is there already (the hub, turned from bar stock)"
-    } else {
-        ""
-    };
-    let Division { hanging, tilt, lean, .. } = division;
+    let stock =
+        if found.needs_stock() { ", on metal that is there already (the hub, turned from bar stock)" } else { "" };
     let leans = lean.map_or(String::new(), |lean| {
         format!(", walls that lean by up to {lean:.0}° (square to them, layers would begin with no room for a bead)")
     });

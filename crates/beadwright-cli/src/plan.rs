@@ -58,7 +58,7 @@ pub(crate) struct Arguments {
     /// Weld the part as several bodies, one after another, each with its own shape of layers: a TOML file with a [[body]] table for each.
     #[arg(long, value_name = "FILE", conflicts_with = "chart")]
     bodies: Option<PathBuf>,
-    /// Divide the part into bodies by itself, as `beadwright directions` does, and weld it as the best of those that can be welded.
+    /// Divide the part into bodies as `beadwright directions` does: weld it as the first division that it offers.
     #[arg(long, value_name = "auto", value_parser = ["auto"], conflicts_with_all = ["chart", "bodies", "onto", "with", "preform", "from_z"])]
     directions: Option<String>,
     /// Weld onto an existing part: a model in the coordinates of the part's file. It is placed together with the part and not welded
@@ -260,13 +260,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Part::Mesh(import) = &model {
         say_size(&import.mesh, &profile)?;
     }
+    let kept = arguments.strategy.is_some();
+    let mut divided = None;
     if arguments.directions.is_some() {
-        let mesh = model
-            .mesh()
-            .context("--directions auto: only a solid is divided into bodies, and this part is given by curves")?;
-        profile.layers.bodies = directions::bodies(&part, mesh, &profile, &task)?;
+        let (bodies, sentence) = directions::bodies(&part, &model, (&profile, kept), &task)?;
+        (profile.layers.bodies, divided) = (bodies, Some(sentence));
     }
-    let Choice { profile, note } = choice::choose(&model, &profile, arguments.strategy.is_some(), &task)?;
+    let Choice { profile, note } = choice::choose(&model, &profile, kept, &task)?;
     let programs = arguments.programs(&arguments.profile, &profile, &part, 0.0)?;
     let settings = deposit_settings(arguments.grid, &profile, model.bounds())?;
     let selection = Selection {
@@ -309,7 +309,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let faults =
         faults.map(|(post, fault)| format!("{post}, {}: {fault} Remedy: {}.", fault.kind.name, fault.kind.remedy));
     let own = model.notes().iter().cloned();
-    summary.notes.splice(0..0, own.chain(faults).chain(note));
+    summary.notes.splice(0..0, own.chain(divided).chain(faults).chain(note));
     summary.notes.extend(files.notes());
     let found = remedy::findings(&summary, &model.repair().sentences(), files.check(&task)?, remedy::words(&profile));
     let (figures, totals, built) = (files.figures(), files.totals(), files.built());

@@ -30,7 +30,8 @@ pub(crate) struct Arguments {
     /// How far the scan may lie inside the part before metal counts as missing, mm.
     #[arg(long, value_name = "MM", default_value_t = 0.5, value_parser = parse_tolerance)]
     tolerance: f64,
-    /// Metal welded above the part's surface, at most, mm, to be milled off: one layer if left out, which is the least.
+    /// Metal welded above the part's surface, at most, mm, to be milled off: one layer if left out, which is the least. Around edges and
+    /// corners too narrow for a bead it is more.
     #[arg(long, value_name = "MM", value_parser = parse_allowance)]
     allowance: Option<f64>,
     /// Angle between the sides of a groove and its floor, degrees, where damage is so steep that it is milled to a groove first.

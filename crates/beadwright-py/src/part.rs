@@ -195,8 +195,8 @@ impl Part {
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let bead = profile.profile.bead.width;
         self.fits(bead).refuse(Some(&self.name))?;
-        let (mesh, settings) = (self.solid()?, Settings { lean, tilt, bead });
-        let made = |task: &_| tried(&self.name, mesh, &profile.profile, settings, task);
+        let settings = Settings { lean, tilt, bead };
+        let made = |task: &_| tried(&self.name, &self.part, &profile.profile, false, settings, task);
         let Found { divisions, .. } = Running::new(None, None).run(py, Some(&self.name), made)?;
         let as_values = |Tried { division, bodies, outcome }: &Tried| {
             let (metrics, refused) = match outcome {

@@ -2,12 +2,14 @@
 
 pub use bead_part::directions::{Division, Piece, Settings, by_planes, divisions};
 
+use crate::dialect::{self, own};
+use crate::layer::Layer;
 use crate::metrics::Metrics;
-use crate::model::Mesh;
+use crate::model::Part;
+use crate::plan::choice::{Choice, choose};
 use crate::plan::{Header, PlanError, Sink, plan_into};
 use crate::profile::{Body, Profile};
 use crate::task::{Cancelled, Task};
-use std::cmp::Ordering;
 use std::convert::Infallible;
 
 /// A division, and what came of planning it.
@@ -28,82 +30,123 @@ pub enum Outcome {
     Planned(Box<Metrics>),
     /// It cannot: the first reason, as a sentence.
     Refused(String),
-    /// It was not planned, since another can be welded.
+    /// It was not planned.
     Untried,
 }
 
 /// Divisions of a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// Those that can be welded come first; of these the ones with less overhang, without metal that must be there already,
-    /// with less left bare, and then the cheaper ones. The last is the whole part in level layers, which is planned only if no
-    /// other can be welded.
+    /// Those that can be welded come first, and of these the cheaper ones (see [`tried`]). The whole part in level layers is one
+    /// of them; it is planned only if no other can be welded, and comes last otherwise.
     pub divisions: Vec<Tried>,
+    /// What overhangs in level layers, mm².
+    pub level: f64,
     /// If nothing can be welded: what could be if its layers may lie farther from level than [`Settings::tilt`].
     pub tilted: Option<Tried>,
 }
 
 /// Divides a part that stands on the table, and plans it in each way until one can be welded: as what is recognized in it, in
-/// pieces cut off by planes, in level layers. `name` is that of a part in one piece.
+/// pieces cut off by planes, in level layers. `name` is that of a part in one piece; `kept` is whether the strategy of the profile was
+/// asked for ([`choose`]).
+///
+/// The order is that of the price, or of the time where the profile has no prices. It counts 3 % higher for each body more than one,
+/// twice the share that stays bare, and as much as what overhangs is of that in level layers. Metal that must be there
+/// already, such as a hub, is not in the price, so what needs it comes after what does not.
 ///
 /// ```
 /// use beadwright::directions::{Outcome, Settings, tried};
-/// use beadwright::{Profile, Task, example};
+/// use beadwright::{Model, Placement, Profile, Task, example};
 ///
-/// let profile = Profile::built_in("cmt-steel-abb")?;
-/// let hub = example::find("hub").ok_or("no such example")?.mesh();
+/// let (profile, task) = (Profile::built_in("cmt-steel-abb")?, Task::new());
+/// let hub = example::find("hub").ok_or("no such example")?.stl();
+/// let hub = Model::read(&hub, &task)?.place(&Placement::default(), None, profile.bead.width)?;
 /// let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
-/// let found = tried("hub", &hub, &profile, settings, &Task::new())?;
+/// let found = tried("hub", &hub, &profile, false, settings, &task)?;
 /// let Outcome::Planned(metrics) = &found.divisions[0].outcome else { return Err("nothing can be welded".into()) };
 /// assert!(metrics.coverage() > 0.99);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// [`Cancelled`].
-pub fn tried(name: &str, mesh: &Mesh, profile: &Profile, settings: Settings, task: &Task) -> Result<Found, Cancelled> {
-    let trial = |division: Division| Tried::of(name, mesh, profile, division, task);
-    let trials = |divisions: Vec<Division>| divisions.into_iter().map(trial).collect::<Result<Vec<_>, Cancelled>>();
-    let mut found = divisions(mesh, settings, task)?;
-    let level = found.split_off(found.len().saturating_sub(1));
-    let mut tried = trials(found)?;
-    if !tried.iter().any(Tried::is_planned) {
+/// [`PlanError::ChartOfCurves`], [`PlanError::Cancelled`].
+pub fn tried(
+    name: &str,
+    part: &Part,
+    profile: &Profile,
+    kept: bool,
+    settings: Settings,
+    task: &Task,
+) -> Result<Found, PlanError<Infallible>> {
+    let mesh = part.mesh().ok_or(PlanError::ChartOfCurves)?;
+    let trial = |untried: Tried| untried.tried(name, part, profile, kept, task);
+    let mut found = untried(name, part, settings, task)?;
+    let whole = found.divisions.split_off(found.divisions.len().saturating_sub(1));
+    let mut tried = found.divisions.into_iter().map(trial).collect::<Result<Vec<_>, Cancelled>>()?;
+    // Planes are searched for what is recognized only if it overhangs.
+    let welds_it_all = |tried: &Tried| tried.is_planned() && !tried.needs_stock();
+    if !tried.is_empty() && !tried.iter().any(welds_it_all) {
         let is_known = |division: &Division| tried.iter().any(|tried| tried.division == *division);
-        let more = by_planes(mesh, settings, task)?.into_iter().filter(|division| !is_known(division)).collect();
-        tried.extend(trials(more)?);
+        let more = by_planes(mesh, settings, task)?.into_iter().filter(|division| !is_known(division));
+        let more = more.map(|division| trial(Tried::of(name, division))).collect::<Result<Vec<_>, Cancelled>>()?;
+        tried.extend(more);
     }
-    tried.sort_by(Tried::before);
-    if tried.iter().any(Tried::is_planned) {
-        tried.extend(level.into_iter().map(|level| Tried::untried(name, level)));
-        return Ok(Found { divisions: tried, tilted: None });
+    let can = tried.iter().any(Tried::is_planned);
+    let whole = whole.into_iter().map(|whole| if can { Ok(whole) } else { trial(whole) });
+    tried.extend(whole.collect::<Result<Vec<_>, Cancelled>>()?);
+    tried.sort_by(|a, b| {
+        let [(a, price_a), (b, price_b)] = [a, b].map(|tried| tried.rank(found.level));
+        a.cmp(&b).then(price_a.total_cmp(&price_b))
+    });
+    found.divisions = tried;
+    if !found.divisions.iter().any(Tried::is_planned) {
+        let farther = divisions(mesh, Settings { tilt: MOST_TILT, ..settings }, task)?.into_iter();
+        for division in farther.filter(|division| division.tilt > settings.tilt + 1.0) {
+            let tilted = trial(Tried::of(name, division))?;
+            if tilted.is_planned() {
+                found.tilted = Some(tilted);
+                break;
+            }
+        }
     }
-    tried.extend(trials(level)?);
-    if tried.iter().any(Tried::is_planned) {
-        return Ok(Found { divisions: tried, tilted: None });
-    }
-    let mut farther = divisions(mesh, Settings { tilt: MOST_TILT, ..settings }, task)?;
-    farther.retain(|division| division.tilt > settings.tilt);
-    let tilted = trials(farther)?.into_iter().find(Tried::is_planned);
-    Ok(Found { divisions: tried, tilted })
+    Ok(found)
+}
+
+/// The same divisions without planning them, as they are found.
+///
+/// # Errors
+/// [`PlanError::ChartOfCurves`], [`PlanError::Cancelled`].
+pub fn untried(name: &str, part: &Part, settings: Settings, task: &Task) -> Result<Found, PlanError<Infallible>> {
+    let found = divisions(part.mesh().ok_or(PlanError::ChartOfCurves)?, settings, task)?;
+    let level = found.last().map_or(0.0, |level| level.hanging);
+    let divisions = found.into_iter().map(|division| Tried::of(name, division)).collect();
+    Ok(Found { divisions, level, tilted: None })
 }
 
 /// Layers that face straight down, °.
 const MOST_TILT: f64 = 180.0;
-/// Overhangs that differ by less than this are alike, mm².
-const ALIKE: f64 = 200.0;
-/// Shares left bare that differ by less than this are alike.
-const BARE: f64 = 0.02;
+/// Enough to ask a dialect whether it writes what a profile wants.
+const NO_LAYERS: [Layer; 0] = [];
+/// What each body more costs, as a share of the price: it is a place to begin, to align and to check.
+const BODY: f64 = 0.03;
+/// What it costs that a share of the part stays bare, as so many times that share of the price.
+const BARE: f64 = 2.0;
 
 impl Tried {
-    fn untried(name: &str, division: Division) -> Self {
+    fn of(name: &str, division: Division) -> Self {
         Self { bodies: Body::of_division(name, &division), division, outcome: Outcome::Untried }
     }
 
-    fn of(name: &str, mesh: &Mesh, profile: &Profile, division: Division, task: &Task) -> Result<Self, Cancelled> {
-        let untried = Self::untried(name, division);
+    fn tried(self, name: &str, part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result<Self, Cancelled> {
         let mut profile = profile.clone();
-        profile.layers.bodies.clone_from(&untried.bodies);
-        let outcome = match plan_into(name, mesh, &profile, task, &mut Nowhere) {
+        profile.layers.bodies.clone_from(&self.bodies);
+        let posts = profile.posts.iter().filter(|post| !own::is_folder(post));
+        let mut errors = posts.filter_map(|post| dialect::write(post, &NO_LAYERS, &profile.job(name)).err());
+        if let Some(error) = errors.next() {
+            return Ok(Self { outcome: Outcome::Refused(error.to_string()), ..self });
+        }
+        let Choice { profile, .. } = choose(part, &profile, kept, task)?;
+        let outcome = match plan_into(name, part, &profile, task, &mut Nowhere) {
             Ok(summary) => match summary.forbidden.into_iter().next() {
                 Some(reason) => Outcome::Refused(reason),
                 None => Outcome::Planned(Box::new(summary.metrics)),
@@ -111,7 +154,7 @@ impl Tried {
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled),
             Err(error) => Outcome::Refused(error.to_string()),
         };
-        Ok(Self { outcome, ..untried })
+        Ok(Self { outcome, ..self })
     }
 
     /// Whether it was planned and can be welded.
@@ -119,26 +162,29 @@ impl Tried {
         matches!(self.outcome, Outcome::Planned(_))
     }
 
-    /// What can be welded comes first; of that, what leaves less overhang, needs no other metal, covers more, costs less or takes
-    /// less time.
-    fn before(&self, other: &Self) -> Ordering {
-        let rank = |tried: &Self| {
-            let metrics = match &tried.outcome {
-                Outcome::Planned(metrics) => Some(metrics),
-                Outcome::Refused(_) | Outcome::Untried => None,
-            };
-            let price = |metrics: &Metrics| metrics.cost.unwrap_or(metrics.total_time_s);
-            let on_stock = tried.bodies.iter().any(|body| body.on_stock);
-            [
-                f64::from(u8::from(metrics.is_none())),
-                (tried.division.hanging / ALIKE).floor(),
-                f64::from(u8::from(on_stock)),
-                metrics.map_or(0.0, |metrics| ((1.0 - metrics.coverage()) / BARE).floor()),
-                metrics.map_or(0.0, |metrics| price(metrics)),
-            ]
-        };
-        let pairs = rank(self).into_iter().zip(rank(other));
-        pairs.fold(Ordering::Equal, |order, (own, other)| order.then(own.total_cmp(&other)))
+    /// Whether it is the whole part in level layers.
+    pub fn is_level(&self) -> bool {
+        matches!(&self.bodies[..], [only] if only.chart.is_level())
+    }
+
+    /// Whether a body of it is welded on metal that must be there already.
+    pub fn needs_stock(&self) -> bool {
+        self.bodies.iter().any(|body| body.on_stock)
+    }
+
+    /// Its class, and its price in that; the lowest comes first. `level` is what overhangs in level layers, mm².
+    fn rank(&self, level: f64) -> (u8, f64) {
+        match &self.outcome {
+            Outcome::Planned(metrics) => {
+                let price = metrics.cost.unwrap_or(metrics.total_time_s);
+                let bodies = BODY * (self.bodies.len() - 1) as f64;
+                let bare = BARE * (1.0 - metrics.coverage()).max(0.0);
+                let hanging = self.division.hanging / level.max(1.0);
+                (u8::from(self.needs_stock()), price * (1.0 + bodies + bare + hanging))
+            }
+            Outcome::Refused(_) if !self.is_level() => (2, 0.0),
+            Outcome::Refused(_) | Outcome::Untried => (3, 0.0),
+        }
     }
 }
 
@@ -152,7 +198,7 @@ impl Sink for Nowhere {
         Ok(())
     }
 
-    fn layer(&mut self, _: crate::Layer) -> Result<(), Infallible> {
+    fn layer(&mut self, _: Layer) -> Result<(), Infallible> {
         Ok(())
     }
 }

@@ -539,7 +539,7 @@ fn directions_that_are_offered_first_can_be_welded() {
     let found = |blocks: &[([f64; 3], [f64; 3])], degrees: f64| -> (Mesh, Found) {
         let mut mesh = Mesh::default();
         blocks.iter().for_each(|(low, high)| mesh.add(block(*low, *high, degrees)));
-        let found = tried("post", &mesh, &profile, settings, &Task::new()).unwrap();
+        let found = tried("post", &imported(mesh.clone()), &profile, false, settings, &Task::new()).unwrap();
         (mesh, found)
     };
     let arms = [
@@ -548,7 +548,7 @@ fn directions_that_are_offered_first_can_be_welded() {
         ([-80.0, 0.0, 40.0], [-20.0, 40.0, 65.0]),
     ];
     for degrees in [0.0, 37.0] {
-        let (mesh, Found { divisions, tilted }) = found(&arms, degrees);
+        let (mesh, Found { divisions, tilted, .. }) = found(&arms, degrees);
         let (level, tried) = divisions.split_last().unwrap();
         assert!(tried[0].is_planned() && tried[0].bodies.len() == 3, "{degrees}°: {:?}", tried[0]);
         assert!(tried.is_sorted_by_key(|tried| !tried.is_planned()) && tilted.is_none(), "{degrees}°");
@@ -566,7 +566,8 @@ fn directions_that_are_offered_first_can_be_welded() {
         ([30.0, 0.0, 0.0], [60.0, 40.0, 60.0]),
         ([-60.0, 0.0, 60.0], [60.0, 40.0, 90.0]),
     ];
-    let (_, Found { divisions, .. }) = found(&posts, 0.0);
+    let (_, Found { divisions, level, .. }) = found(&posts, 0.0);
+    assert!((level - 60.0 * 40.0).abs() < 1.0, "{level}");
     for tried in divisions {
         let Outcome::Refused(why) = tried.outcome else { panic!("{:?}", tried.bodies) };
         assert!(why.ends_with('.') && why.contains("mm"), "{why}");

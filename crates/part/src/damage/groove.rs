@@ -182,20 +182,31 @@ impl Groove {
         Ok(Region::from_rings(&rings, FillRule::NonZero))
     }
 
-    /// What is welded: from the floor up to the part's surface, more around its tips, and what is to be milled off, closed, mm.
+    /// What is welded: from the floor up to the part's surface, more around its tips, and what is to be milled off, closed, mm; and
+    /// how much of it lies around tips, beside the part, mm³.
     ///
     /// # Errors
     /// [`WarpError`].
-    pub(super) fn metal(&self, polygons: &[Polygon], settings: Settings, task: &Task) -> Result<Mesh, WarpError> {
+    pub(super) fn metal(
+        &self,
+        polygons: &[Polygon],
+        settings: Settings,
+        task: &Task,
+    ) -> Result<(Mesh, f64), WarpError> {
         let over = settings.over();
-        let mut metal = Mesh::default();
+        let (mut metal, mut beside) = (Mesh::default(), 0.0);
         for polygon in polygons {
             let Solid { vertices, triangles } = Solid::extrude(polygon, 0.0, 1.0);
             let mut flat = warp::divided(&Mesh { vertices, triangles, ..Mesh::default() }, self.grid.step, task)?;
-            flat.vertices.iter_mut().for_each(|p| {
-                let place = p.truncate();
-                p.z *= (self.raised.height(place) - self.floor.height(place)).max(0.0) + over;
-            });
+            let over_floor = |surface: &Surface, p: DVec2| (surface.height(p) - self.floor.height(p)).max(0.0);
+            for corners in flat.triangles.iter().map(|corners| corners.map(|corner| flat.vertices[corner as usize])) {
+                let [a, b, c] = corners.map(DVec3::truncate);
+                let more = |p: DVec2| over_floor(&self.raised, p) - over_floor(&self.top, p);
+                let is_top = corners.iter().all(|corner| corner.z > 0.5);
+                let area = if is_top { (b - a).perp_dot(c - a) / 2.0 } else { 0.0 };
+                beside += area * (more(a) + more(b) + more(c)) / 3.0;
+            }
+            flat.vertices.iter_mut().for_each(|p| p.z *= over_floor(&self.raised, p.truncate()) + over);
             let is_steep = |p: &&DVec3| self.floor.stretch(p.truncate()) > FOLLOWED;
             if let Some(p) = flat.vertices.iter().find(is_steep).filter(|_| self.shape == Shape::Followed) {
                 let stretch = self.floor.stretch(p.truncate());
@@ -209,7 +220,7 @@ impl Groove {
             // Between the corners of a rough floor a plan finds steeper places.
             warp::warped(&Chart::Surface(Arc::clone(&self.floor)), &metal, TOLERANCE, task)?;
         }
-        Ok(metal)
+        Ok((metal, beside))
     }
 
     /// The fraction of a place that no metal covers: of its mouth, seen along the direction, or of the scan's faces if that is not seen.
@@ -254,12 +265,6 @@ impl Groove {
         let volume = milled.triangles.iter().map(volume).sum();
         milled.vertices.iter_mut().zip(&cuts).for_each(|(vertex, cut)| *vertex -= self.up * *cut);
         Ok((milled, volume))
-    }
-
-    /// What is welded around tips beside the part, mm³.
-    pub(super) fn beside_tips(&self, polygons: &[Polygon]) -> f64 {
-        let more = self.places(polygons).map(|p| (self.raised.height(p) - self.top.height(p)).max(0.0));
-        more.sum::<f64>() * self.grid.step.powi(2)
     }
 
     /// How the layers of what is welded lie.

@@ -31,7 +31,8 @@ pub struct Settings {
     pub step: f64,
     /// Metal is missing where the scan lies deeper inside the part than this.
     pub tolerance: f64,
-    /// Metal that is welded above the part's surface, at most, to be milled off; at least a layer.
+    /// Metal that is welded above the part's surface, at most, to be milled off; at least a layer. Around edges and corners where no
+    /// bead would have room more is welded, by up to a bead's width.
     pub allowance: f64,
     /// Height of a layer.
     pub layer: f64,
@@ -289,11 +290,11 @@ impl Metal {
                 return Err(Unfilled::Left(if is_coarse { Reason::Coarse } else { Reason::Narrow }));
             }
             let chart = groove.chart(&polygons);
-            let mesh = groove.metal(&polygons, settings, task)?;
+            let (mesh, beside) = groove.metal(&polygons, settings, task)?;
             let (_, milled) = groove.milled(scan, &polygons, settings, task)?;
             let bare = groove.bare(found, &polygons);
             let over = settings.over() * polygons.iter().map(Polygon::area).sum::<f64>();
-            let missing = (mesh.volume() - milled - over - groove.beside_tips(&polygons)).max(0.0);
+            let missing = (mesh.volume() - milled - over - beside).max(0.0);
             let unresolved = unresolved(found, up, (missing, bare), settings);
             let (place, depth) = (found.place, found.depth);
             let damage = Damage { mesh, chart, up, place, depth, missing, milled, bare, unresolved };

@@ -3,20 +3,32 @@
 use super::groove::{away, beyond};
 use crate::chart::surface::Grid;
 
-/// The part's heights above a layer on a grid, raised around its tips: those of its heights that no disc as wide as a bead (mm) reaches
-/// while it stays below the part (a grey opening), where metal is missing (`open`). Each layer is then as wide as a bead around a tip.
+/// The part's heights above a layer on a grid, raised around its tips: those of its heights that no disc as wide as a bead (mm)
+/// reaches while it stays below the part (a grey opening), where metal is missing (`open`). A disc around the middle of what is as high
+/// as the tip within its reach is raised to it, so that each layer has room for a bead there, and no more than it needs.
 pub(super) fn widened(grid: &Grid, top: &[Option<f64>], open: &[bool], bead: f64) -> Vec<Option<f64>> {
     let disc = disc(bead / 2.0, grid.step);
-    let around = |heights: &[Option<f64>], of: fn(f64, f64) -> f64| -> Vec<Option<f64>> {
-        let at = |k: usize| disc.iter().filter_map(|way| heights[beyond(grid, k, *way)?.0]).reduce(of);
-        (0..heights.len()).map(at).collect()
+    let around = |k: usize| disc.iter().filter_map(move |way| Some((*way, beyond(grid, k, *way)?.0)));
+    let of_all = |heights: &[Option<f64>], of: fn(f64, f64) -> f64| -> Vec<Option<f64>> {
+        (0..heights.len()).map(|k| around(k).filter_map(|(_, n)| heights[n]).reduce(of)).collect()
     };
-    let reached = around(&around(top, f64::min), f64::max);
-    let is_tip =
-        |k: usize| open[k] && matches!((top[k], reached[k]), (Some(top), Some(reached)) if top > reached + LEAST);
-    let tips: Vec<Option<f64>> = (0..top.len()).map(|k| top[k].filter(|_| is_tip(k))).collect();
-    let raised = around(&tips, f64::max);
-    top.iter().zip(raised).map(|(top, raised)| top.map(|top| raised.map_or(top, |raised| raised.max(top)))).collect()
+    let reached = of_all(&of_all(top, f64::min), f64::max);
+    let mut raised = top.to_vec();
+    for k in (0..top.len()).filter(|k| open[*k]) {
+        let (Some(tip), Some(reached)) = (top[k], reached[k]) else { continue };
+        if tip <= reached + LEAST {
+            continue;
+        }
+        let as_high = around(k).filter(|(_, n)| top[*n].is_some_and(|height| height >= tip));
+        let (sum, count) =
+            as_high.fold(((0, 0), 0_i32), |((x, y), count), (way, _)| ((x + way.0, y + way.1), count + 1));
+        let middle = |sum: isize| (sum as f64 / f64::from(count.max(1))).round() as isize;
+        let Some((centre, _)) = beyond(grid, k, (middle(sum.0), middle(sum.1))) else { continue };
+        for (_, n) in around(centre) {
+            raised[n] = raised[n].map(|height| height.max(tip));
+        }
+    }
+    raised
 }
 
 /// Tips lower than this are left as they are, mm.

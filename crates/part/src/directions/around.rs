@@ -14,6 +14,9 @@ const STEPS: usize = 8;
 const PAST: f64 = 0.02;
 /// Faces are at one radius if their radii differ by less than this fraction of the size.
 const SAME_RADIUS: f64 = 0.01;
+/// Nor by more than this fraction of the radius; and their normals miss the axis by no more than that, as those of a cylinder of
+/// 20 facets do.
+const ROUGH: f64 = 0.16;
 /// The hub must be visible on at least this fraction of the part's surface, and in this fraction of the sectors around
 /// the axis.
 const SEEN: f64 = 0.05;
@@ -72,9 +75,10 @@ impl Hub {
             .map(|sample| (flat(sample.place), flat(sample.normal).normalize_or_zero(), sample.area))
             .collect();
         let middle = middle(&faces, PAST * judge.size)?;
+        let alike = |radius: f64| (SAME_RADIUS * judge.size).min(ROUGH * radius);
         let out = |(p, normal, _): &&(DVec2, DVec2, f64)| {
             let from = *p - middle;
-            from.dot(*normal) > 0.0 && from.perp_dot(*normal).abs() < SAME_RADIUS * judge.size
+            from.dot(*normal) > 0.0 && from.perp_dot(*normal).abs() < alike(from.length())
         };
         let mut areas = std::collections::BTreeMap::new();
         for (p, _, area) in faces.iter().filter(out) {
@@ -82,11 +86,8 @@ impl Hub {
         }
         let (at, _) = areas.iter().max_by(|a: &(&i64, &f64), b| a.1.total_cmp(b.1))?;
         let near = *at as f64 * SAME_RADIUS * judge.size;
-        let own: Vec<&(DVec2, DVec2, f64)> = faces
-            .iter()
-            .filter(out)
-            .filter(|(p, ..)| (p.distance(middle) - near).abs() < SAME_RADIUS * judge.size)
-            .collect();
+        let own: Vec<&(DVec2, DVec2, f64)> =
+            faces.iter().filter(out).filter(|(p, ..)| (p.distance(middle) - near).abs() < alike(near)).collect();
         let seen: f64 = own.iter().map(|(.., area)| area).sum();
         let radius = own.iter().map(|(p, _, area)| p.distance(middle) * area).sum::<f64>() / seen;
         let through = u * middle.x + v * middle.y;

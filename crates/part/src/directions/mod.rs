@@ -264,7 +264,11 @@ impl Division {
             Chart::Plane(plane) => plane.up,
             _ => DVec3::ZERO,
         };
-        let is_there = |a: &Piece| other.pieces.iter().any(|b| up(a).distance(up(b)) < ALIKE);
+        let mut left: Vec<&Piece> = other.pieces.iter().collect();
+        let is_there = |a: &Piece| {
+            let same = left.iter().position(|b| up(a).distance(up(b)) < ALIKE);
+            same.map(|k| left.swap_remove(k)).is_some()
+        };
         self.pieces.len() == other.pieces.len() && self.pieces.iter().all(is_there)
     }
 }

@@ -270,6 +270,7 @@ impl Tree {
 }
 
 /// The layers of a tube on a carrier.
+#[derive(Clone, Copy)]
 enum Layers {
     /// Those of the carrier go on.
     Carriers,
@@ -283,18 +284,18 @@ enum Layers {
 
 impl Layers {
     /// The first of them from which the tube leans no more than a wall should, `lean`, and that soon have room for a bead; if
-    /// there are none, those from which it leans least, within reason. And how much it leans, °. `flat` is how much it leans
-    /// from flat layers, and they from the surface on which they begin.
+    /// there are none, those of them from which it leans least, within reason. And how much it leans, °. `flat` is how much it
+    /// leans from flat layers, and they from the surface on which they begin.
     fn of(carriers: f64, around: Option<f64>, (flat, skew): (f64, f64), lean: f64) -> (Self, f64) {
-        match around {
-            _ if carriers <= lean => (Self::Carriers, carriers),
-            Some(around) if around <= lean => (Self::Around, around),
-            None if flat <= lean && skew <= SKEW => (Self::Flat, flat),
-            Some(around) if around < carriers && around <= MOST_LEAN => (Self::Around, around),
-            _ if carriers <= MOST_LEAN => (Self::Carriers, carriers),
-            _ if flat <= MOST_LEAN => (Self::Flat, flat),
-            _ => (Self::Square, 0.0),
-        }
+        let around = around.map(|around| (Self::Around, around));
+        let flat_soon = (skew <= SKEW).then_some((Self::Flat, flat));
+        let mut all = vec![(Self::Carriers, carriers)];
+        all.extend(around.into_iter().chain(flat_soon));
+        let first = all.iter().copied().find(|(_, leans)| *leans <= lean);
+        let least = all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, leans)| *leans <= MOST_LEAN);
+        // Flat layers that begin late are still less askew than those square to the tube.
+        let late = Some((Self::Flat, flat)).filter(|_| flat <= MOST_LEAN);
+        first.or(least).or(late).unwrap_or((Self::Square, 0.0))
     }
 }
 

@@ -38,6 +38,8 @@ const NOTHING: f64 = 4.0;
 /// this cosine.
 const ON_IT: f64 = 2e-3;
 const FACES_IT: f64 = 0.99;
+/// A face is square to a direction if the cosine of the angle between its normal and the direction is greater.
+const ALONG: f64 = 0.9999;
 
 /// Data by which directions are judged.
 pub(super) struct Judge {
@@ -164,16 +166,18 @@ pub(super) fn planes(samples: &[Sample], judge: &Judge) -> Vec<Plane> {
         let heights = samples.iter().map(|sample| up.dot(sample.place));
         let (low, high) = heights.fold((f64::MAX, f64::MIN), |(low, high), h| (low.min(h), high.max(h)));
         let step = (high - low) / HEIGHTS as f64;
-        let (mut areas, mut faces) = (vec![[0.0; 2]; HEIGHTS], vec![[0.0; 3]; HEIGHTS]);
+        // Faces that look along the direction, and against it: their areas, and those times their heights.
+        let (mut areas, mut faces) = (vec![[0.0; 2]; HEIGHTS], vec![[[0.0; 2]; 2]; HEIGHTS]);
+        let is_own = up.z > ALONG || judge.faces.iter().any(|face| face.dot(*up).abs() > ALONG);
         for (sample, hanging) in samples.iter().zip(&hanging) {
             let height = up.dot(sample.place);
             let at = (((height - low) / step) as usize).min(HEIGHTS - 1);
             areas[at][0] += f64::from(u8::from(*hanging)) * sample.area;
             areas[at][1] += f64::from(u8::from(judge.hangs(sample, *up))) * sample.area;
             let faces_it = sample.normal.dot(*up);
-            if faces_it.abs() > FACES_IT {
-                let sums = [sample.area, sample.area * height, sample.area * faces_it];
-                sums.into_iter().zip(&mut faces[at]).for_each(|(own, sum)| *sum += own);
+            if is_own && faces_it.abs() > ALONG {
+                let sums = &mut faces[at][usize::from(faces_it < 0.0)];
+                *sums = [sums[0] + sample.area, sums[1] + sample.area * height];
             }
         }
         let (mut spared, mut left, mut found) = (0.0, 0.0, Vec::new());
@@ -190,8 +194,9 @@ pub(super) fn planes(samples: &[Sample], judge: &Judge) -> Vec<Plane> {
         let by_share =
             SHARES.iter().filter_map(highest).filter(worthwhile).map(|(worth, _, plane)| (false, worth, plane));
         // Along a large face, a cut leaves no slab, and a little outside it, no film. `found` begins with the highest.
-        let along_face = |(found, [area, sum, facing]): (&(f64, f64, Plane), &[f64; 3])| {
-            let plane = Plane { origin: *up * (sum / area + OUTSIDE * facing.signum()), up: *up };
+        let along_face = |(found, [ahead, against]): (&(f64, f64, Plane), &[[f64; 2]; 2])| {
+            let ([area, sum], outside) = if ahead[0] > against[0] { (ahead, OUTSIDE) } else { (against, -OUTSIDE) };
+            let plane = Plane { origin: *up * (sum / area + outside), up: *up };
             (worthwhile(found) && *area > WORTH * judge.surface).then_some((true, found.0, plane))
         };
         let along_faces = found.iter().zip(faces[1..].iter().rev()).filter_map(along_face);
