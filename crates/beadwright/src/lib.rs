@@ -28,6 +28,7 @@ pub mod compare;
 pub mod distortion;
 pub mod export;
 pub mod files;
+pub mod palette;
 pub mod plan;
 pub mod profile;
 pub mod read_back;

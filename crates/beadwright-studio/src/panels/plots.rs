@@ -4,6 +4,8 @@ use super::{process, robot, words};
 use crate::actions::Action;
 use crate::jobs::Ask;
 use crate::known::{Known, Queue, View};
+use crate::theme::ink;
+use beadwright::palette::CURVES;
 use beadwright::program::PositionerAxis;
 use beadwright::report::{bead_window, plot as page};
 use beadwright::robot::{Pose, Reach, Stop};
@@ -15,9 +17,6 @@ const POINTS: usize = 2000;
 
 /// Spacing of the numbers on an axis in screen points, from barely visible to clear; the plots are small here.
 const SPACING: Rangef = Rangef { min: 25.0, max: 40.0 };
-
-/// The colours of the positioner's axes.
-const AXES: [Color32; 2] = [Color32::from_rgb(52, 132, 240), Color32::from_rgb(252, 168, 48)];
 
 /// Limits no farther than this from an angle are drawn, °.
 const HALF_TURN: f64 = 180.0;
@@ -144,7 +143,8 @@ fn positioner(known: Known<'_>, reach: &Reach, ui: &mut Ui) {
     let plot = Plot::new("positioner").height(1.5 * HEIGHT).legend(Legend::default()).custom_x_axes(vec![time]);
     let plot = plot.custom_y_axes(vec![AxisHints::new_y().label_spacing(SPACING)]);
     plot.allow_scroll(false).show(ui, |plot| {
-        for (number, (axis, colour)) in known.axes().iter().zip(AXES).enumerate() {
+        for (number, (axis, colour)) in known.axes().iter().zip(&CURVES[1..]).enumerate() {
+            let colour = ink(*colour);
             let points = timed(reach, |stop, _| Some(stop.attitude.held?.angles[number]));
             let name = robot::axis_name(known, number);
             for limit in near_limits(axis, &points) {

@@ -1,15 +1,15 @@
 // What beads can be coloured by: the value of a piece, the range over the whole part, and its words.
 
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
-// In the order of their numbers (encode.rs). Their colours are those of the studio: people without red, green or blue cones tell them apart too.
-const KINDS = ["contour", "infill", "skeleton", "wall"];
+const KINDS = INKS.kinds.map(([name]) => name);
 let colours = {};
 
 function readColours() {
   const style = getComputedStyle(document.documentElement);
-  const names = ["stage", "slice", "outline", "travel", ...KINDS, "start", "end", "mark", "text", "soft", "accent", "line", "wait"];
+  const names = ["stage", "slice", "outline", "travel", "contour", "start", "end", "mark", "text", "soft", "accent", "line", "wait", "chosen", "bad"];
   colours = Object.fromEntries(names.map(name => [name, style.getPropertyValue("--" + name).trim()]));
-  colours.kinds = KINDS.map(name => channels(colours[name]));
+  // In the order of their numbers (encode.rs).
+  colours.kinds = INKS.kinds.map(([, colour]) => colour);
 }
 
 const channels = hex => [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16));

@@ -10,6 +10,7 @@
 //! | [`svg`] | one layer as a standalone picture |
 //! | [`bent`] | a body that bends, for a page |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
+//! | `colours` | the palette for styles and scripts |
 //! | [`angles`] | plots over the raster angle |
 //! | [`bead_window`] | width/height of a bead library over its first input |
 //! | `positioner` | the angles of the axes that turn the part |
@@ -25,6 +26,7 @@
 pub mod angles;
 pub mod bead_window;
 pub mod bent;
+mod colours;
 pub mod encode;
 mod lie;
 pub mod overhang;
@@ -156,7 +158,7 @@ impl Report {
         let (header, profile) = (&self.header, &self.profile);
         let values = [
             ("title", escape(&header.part)),
-            ("css", include_str!("page.css").to_owned()),
+            ("css", colours::css() + include_str!("page.css")),
             ("sentence", tables::sentence(header, summary, profile)),
             ("state", tables::state(summary, findings)),
             ("refused", tables::refused(summary)),
@@ -173,12 +175,13 @@ impl Report {
             (
                 "js",
                 [
+                    &*colours::js(),
                     include_str!("inflate.js"),
                     include_str!("layers.js"),
                     include_str!("layout.js"),
                     include_str!("lie.js"),
-                    include_str!("heat.js"),
                     include_str!("ramp.js"),
+                    include_str!("heat.js"),
                     include_str!("colour.js"),
                     include_str!("picture.js"),
                     include_str!("camera.js"),

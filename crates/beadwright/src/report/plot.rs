@@ -2,6 +2,7 @@
 
 use super::escape;
 use crate::number::fixed;
+use crate::palette::{self, CURVES, hex};
 use glam::DVec2;
 
 /// One curve.
@@ -41,8 +42,6 @@ const TOP: f64 = 44.0;
 const BOTTOM: f64 = 56.0;
 /// Height of a row of the legend.
 const ROW: f64 = 18.0;
-/// Distinguishable even without red, green or blue cones (`tests/it/page_colours.rs`; most are Okabe and Ito's, 2008).
-const COLOURS: [&str; 6] = ["#004b87", "#d55e00", "#009e73", "#d88fc0", "#8a1c4a", "#000000"];
 /// How lines are dashed: when the colours repeat, the dashes differ.
 const DASHES: [&str; 3] = ["none", "9 4", "2 4"];
 
@@ -75,7 +74,13 @@ impl Plot {
         for (low, high, word) in &self.bands {
             let (a, b) = (place(DVec2::new(x.low, *high)), place(DVec2::new(x.high, *low)));
             band(&mut svg, a, b);
-            text(&mut svg, DVec2::new(b.x - 6.0, b.y - 6.0), "end", word, "fill=\"#15803d\"");
+            text(
+                &mut svg,
+                DVec2::new(b.x - 6.0, b.y - 6.0),
+                "end",
+                word,
+                &format!("fill=\"{}\"", hex(palette::good(false))),
+            );
         }
         for at in x.ticks() {
             let (a, b) = (place(DVec2::new(at, y.low)), place(DVec2::new(at, y.high)));
@@ -100,8 +105,8 @@ impl Plot {
                 points.join(" ")
             );
         }
-        for (points, colour) in self.dots.iter().zip(COLOURS.iter().cycle()) {
-            points.iter().for_each(|p| dot(&mut svg, place(*p), colour));
+        for (points, colour) in self.dots.iter().zip(CURVES.iter().cycle()) {
+            points.iter().for_each(|p| dot(&mut svg, place(*p), &hex(*colour)));
         }
         let middle = LEFT + (SIZE.x - LEFT - RIGHT) / 2.0;
         text(&mut svg, DVec2::new(middle, SIZE.y - 14.0), "middle", &self.x, "");
@@ -148,8 +153,8 @@ impl Plot {
 
 /// Colour and dashes of a curve, by its number.
 fn stroke(number: usize) -> String {
-    let colour = COLOURS[number % COLOURS.len()];
-    format!("stroke=\"{colour}\" stroke-dasharray=\"{}\"", DASHES[number / COLOURS.len() % DASHES.len()])
+    let colour = hex(CURVES[number % CURVES.len()]);
+    format!("stroke=\"{colour}\" stroke-dasharray=\"{}\"", DASHES[number / CURVES.len() % DASHES.len()])
 }
 
 struct Axis {
@@ -197,11 +202,12 @@ fn line(svg: &mut String, a: DVec2, b: DVec2, colour: &str, width: f64) {
 
 fn band(svg: &mut String, a: DVec2, b: DVec2) {
     *svg += &format!(
-        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#dcfce7\"/>\n",
+        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" fill-opacity=\"0.15\"/>\n",
         fixed(a.x, 1),
         fixed(a.y, 1),
         fixed(b.x - a.x, 1),
-        fixed(b.y - a.y, 1)
+        fixed(b.y - a.y, 1),
+        hex(palette::good(false))
     );
 }
 

@@ -6,6 +6,7 @@ use super::sheet::{Row, Sheet};
 use crate::heat::{History, Interpass, LayerHeat};
 use crate::layer::Layer;
 use crate::number::push_fixed;
+use crate::palette;
 use crate::pass::Pass;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon};
@@ -104,14 +105,8 @@ impl Scale {
         Self { low, high: high.max(low + 1.0) }
     }
 
-    /// Dark violet to yellow, of rising lightness, so that it reads in grey too (after matplotlib's "inferno").
     fn colour(&self, temperature: f64) -> String {
-        const STOPS: [[f64; 3]; 5] =
-            [[40.0, 11.0, 84.0], [120.0, 28.0, 109.0], [188.0, 55.0, 84.0], [237.0, 105.0, 37.0], [251.0, 180.0, 26.0]];
-        let at = ((temperature - self.low) / (self.high - self.low)).clamp(0.0, 1.0) * 3.999;
-        let (i, part) = (at as usize, at.fract());
-        let [r, g, b] = [0, 1, 2].map(|c| STOPS[i][c] + (STOPS[i + 1][c] - STOPS[i][c]) * part);
-        format!("#{:02x}{:02x}{:02x}", r as u8, g as u8, b as u8)
+        palette::hex(palette::warmth((temperature - self.low) / (self.high - self.low)))
     }
 
     /// The legend.
