@@ -88,6 +88,8 @@ pub struct Report {
     speeds: Range,
     kinds: BTreeSet<PassKind>,
     figures: Option<Figures>,
+    /// The worst layer's void, overfill and metal outside, % of its area.
+    worst: [f64; 3],
     /// The layer in the middle, for plots over the raster angle.
     middle: Layer,
 }
@@ -109,6 +111,7 @@ impl Report {
             speeds: Range::default(),
             kinds: BTreeSet::new(),
             figures: None,
+            worst: [0.0; 3],
             middle: Layer::default(),
         }
     }
@@ -130,7 +133,10 @@ impl Report {
         self.warmth.push((layer.temperatures.iter().map(|t| t.start).collect(), waits));
         self.measure(layer);
         if let Some(judgement) = judgement {
-            self.figures.get_or_insert_default().add(&judgement.figures);
+            let figures = &judgement.figures;
+            self.figures.get_or_insert_default().add(figures);
+            let worse = [figures.void_percent(), figures.overfill_percent(), figures.outside_percent()];
+            self.worst = [0, 1, 2].map(|i| f64::max(self.worst[i], worse[i]));
             self.maps.push(judgement.picture.as_ref().map(encode::map).unwrap_or_default());
         }
     }
@@ -163,7 +169,7 @@ impl Report {
             ("state", tables::state(summary, findings)),
             ("refused", tables::refused(summary)),
             ("kinds", tables::kinds(&self.kinds)),
-            ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
+            ("totals", tables::totals(header, summary, profile, self.figures.as_ref().map(|all| (all, self.worst)))),
             ("process", tables::process(header, profile)),
             ("angles", angles::section(&self.middle, profile)),
             ("positioner", self.turns.as_ref().map(positioner::Turns::section).unwrap_or_default()),
@@ -215,8 +221,13 @@ impl Report {
         let surfaces: Vec<_> = self.profile.layers.charts().map(lie::surface).collect();
         let surfaces = json!(surfaces);
         let ranges = json!({ "width": self.widths.ends(), "speed": self.speeds.ends() });
+        let check = &self.profile.check;
+        let mut limits = json!({ "voids": check.max_void, "overfill": check.max_overfill });
+        if let Some(interpass) = &self.profile.interpass {
+            limits["hottest"] = interpass.max_temperature.into();
+        }
         format!(
-            "{{\"bead\":{bead},\"stacked\":{stacked},\"ranges\":{ranges},\"times\":{times},\"warmth\":{warmth},\"lies\":{lies},\"surfaces\":{surfaces},\"layers\":[{layers}],\"maps\":[{maps}]}}"
+            "{{\"bead\":{bead},\"stacked\":{stacked},\"ranges\":{ranges},\"limits\":{limits},\"times\":{times},\"warmth\":{warmth},\"lies\":{lies},\"surfaces\":{surfaces},\"layers\":[{layers}],\"maps\":[{maps}]}}"
         )
     }
 

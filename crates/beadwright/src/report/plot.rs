@@ -27,6 +27,8 @@ pub struct Plot {
     pub curves: Vec<Curve>,
     /// Vertical lines: the value of x and a label.
     pub marks: Vec<(f64, String)>,
+    /// Values of y that the curves should not exceed, and a label each.
+    pub limits: Vec<(f64, String)>,
     /// Shaded ranges of y: from, to and a label.
     pub bands: Vec<(f64, f64, String)>,
     /// Single points, in the colours of the curves with the same numbers.
@@ -52,8 +54,9 @@ impl Plot {
         let Some(first) = all().next() else { return String::new() };
         let marks = self.marks.iter().map(|(x, _)| DVec2::new(*x, first.y));
         let bands = self.bands.iter().flat_map(|(low, high, _)| [*low, *high]).map(|y| DVec2::new(first.x, y));
+        let limits = self.limits.iter().map(|(y, _)| DVec2::new(first.x, *y));
         let dots = self.dots.iter().flatten().copied();
-        let Some(bounds) = planar::Bounds::of(all().chain(marks).chain(bands).chain(dots)) else {
+        let Some(bounds) = planar::Bounds::of(all().chain(marks).chain(bands).chain(limits).chain(dots)) else {
             return String::new();
         };
         let low = if self.floating { bounds.min.y } else { bounds.min.y.min(0.0) };
@@ -96,6 +99,12 @@ impl Plot {
             let (a, b) = (place(DVec2::new(*at, y.low)), place(DVec2::new(*at, y.high)));
             line(&mut svg, a, b, "#6b7280", 1.5);
             text(&mut svg, b + DVec2::new(5.0, 12.0), "start", word, "fill=\"#374151\"");
+        }
+        let bad = hex(palette::bad(false));
+        for (at, word) in &self.limits {
+            let (a, b) = (place(DVec2::new(x.low, *at)), place(DVec2::new(x.high, *at)));
+            line(&mut svg, a, b, &format!("{bad}\" stroke-dasharray=\"6 4"), 1.5);
+            text(&mut svg, b + DVec2::new(-6.0, -6.0), "end", word, &format!("fill=\"{bad}\""));
         }
         for (i, curve) in self.curves.iter().enumerate() {
             let points: Vec<String> = curve.points.iter().map(|p| numbers(place(*p))).collect();
@@ -146,7 +155,8 @@ impl Plot {
             format!("{} {low:.2} to {high:.2}", curve.name)
         };
         let drawn = self.curves.iter().filter(|curve| !curve.points.is_empty());
-        let ranges: Vec<String> = drawn.map(range).collect();
+        let limits = self.limits.iter().map(|(_, word)| word.clone());
+        let ranges: Vec<String> = drawn.map(range).chain(limits).collect();
         format!("{}: {} over {}; {}", self.title, self.y, self.x, ranges.join(", "))
     }
 }

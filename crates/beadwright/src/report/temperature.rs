@@ -55,20 +55,15 @@ fn over_time(history: &History, limits: Option<&Interpass>) -> Plot {
         history.layers.iter().flat_map(|layer| &layer.passes).map(|pass| DVec2::new(pass.at / 60.0, pass.start));
     let first = |layer: &LayerHeat| layer.passes.first().map(|pass| pass.at / 60.0);
     let below = history.layers.iter().filter_map(|layer| Some(DVec2::new(first(layer)?, layer.below)));
-    let limit = limits.map(|limits| Curve {
-        name: "limit".to_owned(),
-        points: vec![
-            DVec2::new(0.0, limits.max_temperature),
-            DVec2::new(history.seconds / 60.0, limits.max_temperature),
-        ],
-    });
+    let limit = |limits: &Interpass| (limits.max_temperature, format!("limit {:.0} °C", limits.max_temperature));
     let curve = |name: &str, points: Vec<DVec2>| Curve { name: name.to_owned(), points };
     let curves = [curve("where passes begin", starts.collect()), curve("mean of the layer below", below.collect())];
     Plot {
         title: "Temperature before each pass".to_owned(),
         x: "time, min".to_owned(),
         y: "temperature, °C".to_owned(),
-        curves: curves.into_iter().chain(limit).collect(),
+        curves: curves.to_vec(),
+        limits: limits.map(limit).into_iter().collect(),
         ..Plot::default()
     }
 }

@@ -175,3 +175,19 @@ fn every_curve_of_a_plot_is_distinct_and_named_inside_it() {
 fn of(piece: &str, name: &str) -> String {
     piece.split_once(&format!("{name}=\"")).unwrap().1.split('"').next().unwrap().to_owned()
 }
+
+#[test]
+fn a_limit_is_a_line_across_a_plot_with_its_value() {
+    let curves = vec![Curve { name: "loop".to_owned(), points: vec![DVec2::ZERO, DVec2::new(9.0, 1.0)] }];
+    let limits = vec![(3.0, "limit 3 %".to_owned())];
+    let svg = Plot { title: "Void".to_owned(), curves, limits, ..Plot::default() }.svg();
+    let line = svg.split("<line ").find(|line| line.contains(&hex(palette::bad(false)))).unwrap();
+    let [x1, y1, x2, y2] =
+        [" x1", " y1", " x2", " y2"].map(|name| of(&format!(" {line}"), name).parse::<f64>().unwrap());
+    assert!(y1 == y2 && x2 - x1 > 600.0, "{x1} {y1} {x2} {y2}");
+    // Above the curve, which ends at 1.
+    let points = of(svg.split("<polyline ").nth(1).unwrap(), "points");
+    let end: f64 = points.rsplit(',').next().unwrap().parse().unwrap();
+    assert!(y1 < end - 50.0, "{y1}, {end}");
+    assert!(svg.contains(">limit 3 %</text>") && of(&svg, "aria-label").ends_with("limit 3 %"));
+}
