@@ -73,7 +73,7 @@ pub fn missing(dark: bool) -> Rgb {
 
 /// Text and marks of what went well.
 pub fn good(dark: bool) -> Rgb {
-    if dark { [95, 208, 138] } else { [10, 118, 88] }
+    if dark { [90, 210, 150] } else { [10, 118, 88] }
 }
 
 /// Text and marks of what breaks a limit.

@@ -346,7 +346,17 @@ fn on_a_phone_charts_scale_and_the_first_column_stays() {
     assert!(answer["letters"].as_f64().unwrap() > 7.0 && answer["page"] == 0, "{answer}");
 
     let plan = common::planned("cross", &profile);
-    let script = "return { plots: page.querySelectorAll('.plots svg').length, wide: wide.length, page: page.documentElement.scrollWidth - width };";
-    let Some(answer) = on_a_phone(&page(&plan, &profile), script) else { return };
-    assert!(answer["wide"] == 0 && answer["page"] == 0, "{answer}");
+    let script = "
+        page.querySelector('[name=colour][value=time]').click();
+        const reset = page.getElementById('range-reset');
+        reset.hidden = false;
+        return {
+          plots: page.querySelectorAll('.plots svg').length, wide: wide.length, page: page.documentElement.scrollWidth - width,
+          beside: width - reset.getBoundingClientRect().right,
+        };";
+    for html in [page(&plan, &profile), judged(&plan, &profile)] {
+        let Some(answer) = on_a_phone(&html, script) else { return };
+        assert!(answer["wide"] == 0 && answer["page"] == 0, "{answer}");
+        assert!(answer["beside"].as_f64().unwrap() > 16.0, "the legend leaves its card: {answer}");
+    }
 }
