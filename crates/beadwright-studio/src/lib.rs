@@ -63,6 +63,7 @@ pub mod text;
 pub mod theme;
 pub mod thumbnail;
 mod trial;
+pub mod told;
 pub mod view;
 pub mod view2d;
 pub mod view3d;
