@@ -8,8 +8,8 @@ use crate::theme::ink;
 use beadwright::palette::CURVES;
 use beadwright::program::PositionerAxis;
 use beadwright::report::{bead_window, plot as page};
-use beadwright::robot::{Pose, Reach, Stop};
-use eframe::egui::{Color32, Rangef, Response, Ui};
+use beadwright::robot::{Pose, Reach, Stop, Suggestion};
+use eframe::egui::{Rangef, Response, Ui};
 use egui_plot::{AxisHints, HLine, Legend, Line, LineStyle, Plot, PlotPoints};
 
 /// Maximum number of points drawn for a curve.
@@ -119,6 +119,7 @@ fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
     for finding in &reach.findings {
         ui.colored_label(ui.visuals().warn_fg_color, finding.sentence());
     }
+    suggestion(known, queue, ui);
     ui.label(known.t("plot-joints"));
     let plot = Plot::new("joints").height(2.0 * HEIGHT).legend(Legend::default()).x_axis_label(known.t("axis-time"));
     plot.allow_scroll(false).show(ui, |plot| {
@@ -128,6 +129,29 @@ fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
         }
     });
     positioner(known, reach, ui);
+}
+
+/// Looks for a place of the part that the cell reaches better, and says where it is.
+fn suggestion(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
+    let ready = known.jobs.suggest_job.is_none() && known.jobs.cell.is_some();
+    let button = ui.add_enabled(ready, eframe::egui::Button::new(known.t("suggest")));
+    if button.on_hover_text(known.t("suggest-hint")).clicked() {
+        queue.push(Action::Suggest);
+    }
+    if known.jobs.suggest_job.is_some() {
+        ui.spinner();
+    }
+    match &known.jobs.suggested {
+        Some(Some(Suggestion { place, margin, now, .. })) => {
+            let [x, y, z] = place.position;
+            let now = now.map_or(String::new(), |now| format!(" ({} {now:.1}°)", known.t("suggest-now")));
+            let text = known.t("suggest-place");
+            let turn = place.rotation;
+            ui.label(format!("{text} x {x:.0} y {y:.0} z {z:.0} mm, {turn:.0}°: {margin:.1}°{now}"));
+        }
+        Some(None) => drop(ui.colored_label(ui.visuals().warn_fg_color, known.t("suggest-none"))),
+        None => {}
+    }
 }
 
 /// The angles of the positioner's axes, with their limits.
