@@ -61,8 +61,10 @@ fn a_part_is_laid_flat_scaled_and_turned() {
 #[test]
 fn a_preform_is_turned_the_way_up_in_which_it_costs_least() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("standing.stl");
-    std::fs::write(&path, crosses(&[|p| DVec3::new(p.x, -p.z, p.y)])).unwrap();
+    let path = folder.path().join("leaning.stl");
+    // It leans by 40°.
+    std::fs::write(&path, crosses(&[|p| DVec3::new(p.x, 0.766 * p.y - 0.643 * p.z, 0.643 * p.y + 0.766 * p.z)]))
+        .unwrap();
     let mut harness = studio(&folder.path().join("store"));
     harness.state_mut().view().mode = beadwright_studio::view::Mode::Layer;
     harness.state_mut().open(&path);
@@ -81,7 +83,7 @@ fn a_preform_is_turned_the_way_up_in_which_it_costs_least() {
     click(&mut harness, "Cheapest preform");
     wait(&mut harness);
     let after = score(&harness);
-    assert!(after < 0.98 * before, "{after}, before {before}");
+    assert!(after < 0.9 * before, "{after}, before {before}");
 }
 
 #[test]
