@@ -17,8 +17,8 @@ cat > "$page" <<'END'
 # Gallery
 
 Twelve parts as this version plans them. `beadwright example` makes the models, so every picture can be remade with the
-command above it; `docs/gallery.sh` makes them all. Contours are blue, lines of infill orange, fills of pockets purple, walls
-green; a dot is green where the arc starts and red where it ends.
+command above it; `docs/gallery.sh` makes them all. Contours are blue, lines of infill orange, fills of pockets green, walls
+purple; a dot is cyan where the arc starts and red where it ends.
 
 The first picture opens its live report, [`propeller/report.html`](propeller/report.html), which `docs/book/build` puts into the
 built book: every layer, and all beads in 3-D.

@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let part = arguments.model.part();
     let (name, width) = (&profile.name, profile.bead.width);
     let lead = format!("Profile {name}, beads of {width} mm; {} {}", compare::SCORE, compare::GATE);
-    let mut page = compare::page(&part, &lead, &entries);
+    let mut page = compare::page(&part, &lead, &entries, Some(&profile.check));
     let middle = entries.first().and_then(|e| e.layers.get(e.layers.len() / 2));
     for (name, layer) in names.iter().flat_map(|&name| middle.map(|layer| (name, layer))) {
         compare::add_steps(&mut page, &import.mesh, &profile, name, layer.index, &task)?;

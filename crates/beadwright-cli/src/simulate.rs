@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         entry.layers.len(),
         settings.nominal.bead.width
     );
-    let page = compare::page(&loaded.name, &lead, std::slice::from_ref(&entry));
+    let page = compare::page(&loaded.name, &lead, std::slice::from_ref(&entry), Some(&profile.check));
     write_file(&arguments.output, page.html().as_bytes())?;
     let mut out = std::io::stdout().lock();
     if arguments.json {

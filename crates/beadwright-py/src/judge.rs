@@ -72,7 +72,7 @@ impl Judged {
 #[pyfunction]
 pub(crate) fn page(title: &str, lead: &str, judged: Vec<PyRef<'_, Judged>>) -> String {
     let entries: Vec<Entry> = judged.iter().map(|judged| judged.entry.clone()).collect();
-    library::page(title, lead, &entries).html()
+    library::page(title, lead, &entries, None).html()
 }
 
 /// The grid that is asked for, or one that fits the part, of `layers` layers.

@@ -7,6 +7,7 @@ use crate::jobs::{self, Ask, Job};
 use crate::known::OPENING;
 use crate::level;
 use crate::listing::Listing;
+use crate::orient;
 use crate::remedy::Change;
 use crate::studio::Studio;
 use crate::thumbnail::{self, thumbnail};
@@ -137,6 +138,7 @@ impl Studio {
             Action::LookCloser => self.look_closer(),
             Action::Heat => self.begin_heat(),
             Action::Level => self.begin_level(),
+            Action::Orient => self.begin_orienting(),
             Action::Distort => self.begin_distortion(),
             Action::List => self.begin_listing(),
             Action::StopDistortion => self.stop_distortion(),
@@ -146,6 +148,7 @@ impl Studio {
                 self.take_cell(name);
             }
             Action::Reach => self.begin_reach(),
+            Action::Suggest => self.begin_suggesting(),
             Action::BringBack => {
                 if let Some(project) = self.open.lost.take() {
                     self.begin(project);
@@ -213,6 +216,14 @@ impl Studio {
         }
     }
 
+    /// Looks for a place of the part that the cell reaches better.
+    fn begin_suggesting(&mut self) {
+        if let Some((profile, cell)) = self.plans.own.profile.clone().zip(self.jobs.cell.clone()) {
+            let layers = self.plans.own.layers.clone();
+            self.jobs.suggest_job = Some(jobs::suggest(&self.window.ctx, cell, layers, profile));
+        }
+    }
+
     /// Computes how warm the metal is where passes begin, in the plan and then in the one it is compared with.
     fn begin_heat(&mut self) {
         self.jobs.heat_of_other = !self.plans.own.is_cold();
@@ -232,6 +243,15 @@ impl Studio {
             let listing = Listing::of(&header, &profile, &layers, &dialect);
             (dialect, listing)
         }));
+    }
+
+    /// Looks for the way up in which the part costs least.
+    fn begin_orienting(&mut self) {
+        let own = &self.plans.own;
+        if let Some(part) = own.part.clone() {
+            let preform = own.profile.clone().filter(|_| self.project().preform);
+            self.jobs.orient_job = Some(orient::orient(&self.window.ctx, part, self.project().placement, preform));
+        }
     }
 
     /// Computes how far layers lean from level.

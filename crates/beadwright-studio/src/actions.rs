@@ -84,6 +84,8 @@ pub enum Action {
     SetProfile(&'static str),
     /// Places the part.
     Place(Placement),
+    /// Turns the part the way up in which it costs least.
+    Orient,
     /// Plans the preform of the part, or the part itself.
     Preform(bool),
     /// Sets the height of a wall made from curves, mm.
@@ -112,6 +114,8 @@ pub enum Action {
     Heat,
     /// Computes how far layers lean from level.
     Level,
+    /// Looks for a place of the part that the cell reaches better.
+    Suggest,
     /// Computes how plate and part bend.
     Distort,
     /// Gives it up.

@@ -65,6 +65,11 @@ impl Studio {
             }
             None => {}
         }
+        match jobs::take(&mut self.jobs.orient_job) {
+            Some(Ok(turn)) => self.change("placement", |project| project.placement.turn = turn),
+            Some(Err(error)) => self.complain(error),
+            None => {}
+        }
         match jobs::take(&mut self.jobs.listing_job) {
             Some(Ok(listing)) => {
                 self.jobs.listing = Some(listing);
@@ -76,6 +81,11 @@ impl Studio {
         }
         self.hear_of_scan();
         self.hear_of_distortion();
+        match jobs::take(&mut self.jobs.suggest_job) {
+            Some(Ok(found)) => self.jobs.suggested = Some(found),
+            Some(Err(error)) => self.complain(error),
+            None => {}
+        }
         match jobs::take(&mut self.jobs.reach_job) {
             Some(Ok(Ok(reach))) => {
                 self.jobs.reach = Some(reach);

@@ -14,7 +14,7 @@ pub use place::receive;
 
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
-use beadwright::robot::{self, Cell, Reach};
+use beadwright::robot::{self, Cell, Reach, Suggestion};
 use eframe::egui::Context;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -89,6 +89,11 @@ pub struct Answer {
     pub path: Option<PathBuf>,
     /// Whether somebody can have seen the dialog: a desktop without file dialogs answers at once.
     pub seen: bool,
+}
+
+/// Looks for a place of the part that a robot cell reaches better; `None` if there is none.
+pub fn suggest(ctx: &Context, cell: Cell, layers: Vec<Arc<Layer>>, profile: Arc<Profile>) -> Job<Option<Suggestion>> {
+    Job::start(ctx, move || robot::suggest(&cell, cell.part, &profile.track(&layers)))
 }
 
 /// Checks whether a robot cell can reach all of a plan.

@@ -25,7 +25,7 @@ use beadwright::bead::library::BeadLibrary;
 use beadwright::chart::Chart;
 use beadwright::fill::StrategyName;
 use beadwright::program::PositionerAxis;
-use beadwright::robot::{Cell, Reach};
+use beadwright::robot::{Cell, Reach, Suggestion};
 use eframe::egui::{self, Context};
 use eframe::egui_wgpu::RenderState;
 use glam::DVec3;
@@ -112,6 +112,8 @@ pub(crate) struct Jobs {
     pub(crate) heat_of_other: bool,
     pub(crate) heat_job: Option<Job<Result<Temperatures, String>>>,
     pub(crate) level_job: Option<Job<Leans>>,
+    /// The turn of the part, °, in which it costs least.
+    pub(crate) orient_job: Option<Job<DVec3>>,
     pub(crate) listing_job: Option<Job<Listed>>,
     /// The lines of the program.
     pub(crate) listing: Option<Listed>,
@@ -119,6 +121,9 @@ pub(crate) struct Jobs {
     pub(crate) distortion: Option<Distorting>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
+    pub(crate) suggest_job: Option<Job<Option<Suggestion>>>,
+    /// A place of the part that the cell reaches better; none where there is none.
+    pub(crate) suggested: Option<Option<Suggestion>>,
     /// The cell that the results are for.
     pub(crate) cell: Option<Cell>,
     /// A scan to be opened.
@@ -131,11 +136,19 @@ pub(crate) struct Jobs {
 }
 
 impl Jobs {
+    /// Drops what was found about the reach of a cell, and what is being looked for.
+    pub(crate) fn forget_reach(&mut self) {
+        (self.reach, self.reach_job) = (None, None);
+        (self.suggested, self.suggest_job) = (None, None);
+    }
+
     /// Whether nothing is being computed.
     pub(crate) fn is_idle(&self) -> bool {
         let computes = self.reach_job.is_some()
+            || self.suggest_job.is_some()
             || self.heat_job.is_some()
             || self.level_job.is_some()
+            || self.orient_job.is_some()
             || self.scan_job.is_some()
             || self.listing_job.is_some()
             || self.scan_wanted.is_some()

@@ -30,7 +30,8 @@ impl Studio {
     pub(crate) fn take_cell(&mut self, name: &str) {
         if self.view.cell != name {
             name.clone_into(&mut self.view.cell);
-            (self.jobs.cell, self.jobs.reach, self.jobs.reach_job) = (None, None, None);
+            self.jobs.cell = None;
+            self.jobs.forget_reach();
         }
     }
 }

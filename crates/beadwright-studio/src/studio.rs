@@ -238,10 +238,11 @@ impl Studio {
         self.view.playing = false;
         (self.view.chosen, self.view.pin) = (None, None);
         // Pending answers are about the previous plan.
-        (self.jobs.reach, self.jobs.reach_job) = (None, None);
+        self.jobs.forget_reach();
         self.jobs.looked.forget();
         (self.jobs.listing, self.jobs.listing_job) = (None, None);
         (self.jobs.heat_job, self.jobs.level_job, self.jobs.distortion) = (None, None, None);
+        self.jobs.orient_job = None;
         if self.project().source.is_none() {
             // Undo has led back to the empty window.
             self.plans.planner.cancel();

@@ -134,6 +134,10 @@ pub struct ViewState {
     pub typed: String,
     /// Whether the list of keys is shown.
     pub keys: bool,
+    /// Whether the first steps are shown.
+    pub first_steps: bool,
+    /// Whether it is shown what this program is.
+    pub about: bool,
     /// The layer wanted as the highest one; the top layer if none is wanted, or while there are fewer layers.
     wanted: Option<usize>,
     /// The layer wanted before the view switched to the layer of the chosen bead, and that layer.
@@ -179,6 +183,8 @@ impl Default for ViewState {
             search: String::new(),
             typed: String::new(),
             keys: false,
+            first_steps: false,
+            about: false,
             wanted: None,
             left: None,
         }

@@ -7,8 +7,13 @@ use crate::layer::{self, Layer};
 use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::pass::{Pass, Segment};
+<<<<<<< HEAD
 use crate::plan::{self, AsWelded, Header, PlanError, Sink};
 use crate::profile::Profile;
+=======
+use crate::plan::{self, Header, PlanError, Sink};
+use crate::profile::{CheckLimits, Profile};
+>>>>>>> h43
 use crate::report::encode;
 use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::Sheet;
@@ -331,8 +336,8 @@ pub fn tabulate(page: &mut Sheet, entries: &[Entry]) {
     page.table(&head, &rows);
 }
 
-/// The page with the table and the height fields side by side.
-pub fn page(title: &str, lead: &str, entries: &[Entry]) -> Sheet {
+/// The page with the table and the height fields side by side; `limits` are drawn into the plots.
+pub fn page(title: &str, lead: &str, entries: &[Entry], limits: Option<&CheckLimits>) -> Sheet {
     let mut page = Sheet::new(title, lead);
     tabulate(&mut page, entries);
     let longest = entries.iter().map(|e| &e.layers).max_by_key(|layers| layers.len());
@@ -350,8 +355,9 @@ pub fn page(title: &str, lead: &str, entries: &[Entry]) -> Sheet {
     page.maps(&labels, &columns);
     if labels.len() > 1 {
         page.heading("Layer by layer");
-        page.svg(&layer_plot("Void", entries, Figures::void_percent).svg());
-        page.svg(&layer_plot("Overfill", entries, Figures::overfill_percent).svg());
+        let [void, overfill] = [limits.map(|l| l.max_void), limits.map(|l| l.max_overfill)];
+        page.svg(&layer_plot("Void", entries, Figures::void_percent, void).svg());
+        page.svg(&layer_plot("Overfill", entries, Figures::overfill_percent, overfill).svg());
     }
     page
 }
@@ -385,8 +391,10 @@ pub fn add_steps(
     Ok(())
 }
 
-fn layer_plot(title: &str, entries: &[Entry], value: fn(&Figures) -> f64) -> Plot {
+fn layer_plot(title: &str, entries: &[Entry], value: fn(&Figures) -> f64, limit: Option<f64>) -> Plot {
     let points = |e: &Entry| e.layers.iter().map(|l| DVec2::new(l.index as f64 + 1.0, value(&l.figures))).collect();
     let curves = entries.iter().map(|e| Curve { name: e.name.clone(), points: points(e) }).collect();
-    Plot { title: title.to_owned(), x: "layer".to_owned(), y: "% of the area".to_owned(), curves, ..Plot::default() }
+    let limits = limit.map(|most| (most, format!("limit {most} %"))).into_iter().collect();
+    let [title, x, y] = [title, "layer", "% of the area"].map(str::to_owned);
+    Plot { title, x, y, curves, limits, ..Plot::default() }
 }

@@ -29,6 +29,7 @@ pub mod directions;
 pub mod distortion;
 pub mod export;
 pub mod files;
+pub mod palette;
 pub mod plan;
 pub mod profile;
 pub mod read_back;

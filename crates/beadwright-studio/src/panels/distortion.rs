@@ -96,9 +96,8 @@ fn shape(known: Known<'_>, view: &mut View<'_>, distorted: &Distorted, ui: &mut 
 /// What the colours mean.
 fn legend(known: Known<'_>, view: &View<'_>, distorted: &Distorted, ui: &mut Ui) {
     let figure = if view.state.bend.clamped { &distorted.clamped } else { &distorted.released };
-    let dark = !known.window.settings.light;
     ui.label("0 mm");
-    solid::scale(ui, |part| palette::at(Colour::Movement, part, dark));
+    solid::scale(ui, |part| palette::at(Colour::Movement, part));
     ui.label(format!("{:.2} mm", figure.bent.most())).on_hover_text(known.t("bent-colours-hint"));
     ui.separator();
 }

@@ -2,6 +2,8 @@
 
 use super::{trial, words};
 use crate::known::{Known, Queue, View};
+use crate::text::Language;
+use crate::told::{self, Told};
 use crate::view::{Mode, Pin};
 use beadwright::Finding;
 use beadwright::check::{self, Check};
@@ -37,9 +39,12 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
             Some(check) => checked(known, view, queue, ui, check, findings, colour),
             None => {
                 let count = if finding.count > 1 { format!("{}, ", finding.count) } else { String::new() };
-                let title = format!("{} ({count}{})", finding.kind, known.t(word(finding.severity)));
+                let title = format!("{} ({count}{})", name(known, finding.kind), known.t(word(finding.severity)));
                 ui.colored_label(colour, title);
                 one(known, view, ui, finding);
+                if let Some(told) = in_chinese(known, finding.kind) {
+                    ui.weak(format!("{}：{}。", known.t("remedy"), told.remedy));
+                }
             }
         }
     }
@@ -48,6 +53,30 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
 /// The key of the word for how much a finding matters.
 fn word(severity: Severity) -> &'static str {
     if severity == Severity::Serious { "serious" } else { "remark" }
+}
+
+/// A kind of findings in Chinese, where that is the language of the window.
+fn in_chinese(known: Known<'_>, kind: &str) -> Option<&'static Told> {
+    told::told(kind).filter(|_| known.language() == Language::Chinese)
+}
+
+/// The name of a kind in the language of the window.
+fn name(known: Known<'_>, kind: &'static str) -> &'static str {
+    in_chinese(known, kind).map_or(kind, |told| &told.name)
+}
+
+/// What a finding says in the language of the window; in English where the table of the other lacks it.
+fn said(known: Known<'_>, finding: &Finding) -> String {
+    let chinese = in_chinese(known, finding.kind).and_then(|told| told.say(&finding.text));
+    chinese.unwrap_or_else(|| sentence(&finding.text))
+}
+
+/// The same, with what to do.
+pub(super) fn whole(known: Known<'_>, finding: &Finding) -> String {
+    match in_chinese(known, finding.kind) {
+        Some(told) => format!("{}{}。", said(known, finding), told.remedy),
+        None => sentence(&finding.sentence()),
+    }
 }
 
 /// All that one check found.
@@ -63,14 +92,23 @@ fn checked(
     let found: Vec<&Finding> = findings.iter().filter(|finding| finding.kind == check.name).collect();
     let title = format!(
         "{} ({}, {})",
-        check.name,
+        name(known, check.name),
         found.len(),
         known.t(word(found.iter().map(|f| f.severity).min().unwrap_or(check.severity())))
     );
     let title = CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name);
     let opened = title.default_open(true).show(ui, |ui| {
-        for (key, text) in [("why", check.why), ("remedy", check.remedy)] {
-            explained(known, ui.weak(format!("{}: {text}.", known.t(key))), check.name, text);
+        match in_chinese(known, check.name) {
+            Some(told) => {
+                for (key, text) in [("why", &told.why), ("remedy", &told.remedy)] {
+                    ui.weak(format!("{}：{text}。", known.t(key)));
+                }
+            }
+            None => {
+                for (key, text) in [("why", check.why), ("remedy", check.remedy)] {
+                    explained(known, ui.weak(format!("{}: {text}.", known.t(key))), check.name, text);
+                }
+            }
         }
         if let Some(first) = found.first() {
             trial::offer(known, queue, ui, first);
@@ -99,7 +137,7 @@ fn listed(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, group: &[&Finding]
 }
 
 fn one(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, finding: &Finding) {
-    let text = sentence(&finding.text);
+    let text = said(known, finding);
     if finding.layer.is_none() {
         explained(known, ui.label(&text), finding.kind, &text);
         return;
@@ -134,7 +172,7 @@ fn layers(known: Known<'_>, first: &Finding, last: &Finding) -> String {
 }
 
 /// A sentence, starting with a capital letter.
-pub(super) fn sentence(text: &str) -> String {
+fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

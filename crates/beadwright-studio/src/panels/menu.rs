@@ -1,5 +1,6 @@
 //! Menus, and the bar below them: strategy, views, progress.
 
+use super::help;
 use crate::actions::{self, Action};
 use crate::jobs::Ask;
 use crate::known::{Known, Queue, View};
@@ -41,7 +42,10 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
             ui.menu_button(known.t("language"), |ui| languages(known, queue, ui));
         });
         ui.menu_button(known.t("examples"), |ui| examples(queue, ui));
-        ui.menu_button(known.t("help"), |ui| items(known, queue, ui, &[Action::Keys]));
+        ui.menu_button(known.t("help"), |ui| {
+            help::menu(known, view, ui);
+            items(known, queue, ui, &[Action::Keys]);
+        });
     });
     if known.project().source.is_some() {
         ui.horizontal_wrapped(|ui| bar(known, view, queue, ui));

@@ -1,5 +1,6 @@
 //! Messages on what went wrong or was done; they stay until they are closed.
 
+use super::findings::whole;
 use crate::actions::Action;
 use crate::known::{Known, Queue};
 use crate::planner::Failure;
@@ -40,7 +41,7 @@ pub(super) fn show(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
             line(ui, &message.text, message.error, || queue.push(Action::Dismiss(i)), close);
         }
         for finding in warnings {
-            let text = RichText::new(format!("• {}", finding.sentence()));
+            let text = RichText::new(format!("• {}", whole(known, finding)));
             let error = ui.visuals().error_fg_color;
             ui.label(if finding.severity == Severity::Serious { text.color(error) } else { text.weak() });
         }

@@ -8,6 +8,7 @@ mod compare;
 mod distortion;
 mod export;
 mod findings;
+mod help;
 mod layers;
 mod menu;
 mod messages;
@@ -50,6 +51,7 @@ pub(crate) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
         CentralPanel::default().show(ui, |ui| start::show(known, view, queue, ui));
     }
     questions::show(known, view, queue, ui);
+    help::show(known, view, ui);
 }
 
 /// The panels around the view of a part.

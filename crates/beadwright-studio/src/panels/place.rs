@@ -2,7 +2,9 @@
 
 use crate::actions::Action;
 use crate::known::{Known, Queue, View};
+use crate::theme;
 use crate::view3d::{Camera, Gizmo, Grip, Handle, Moved, palette};
+use beadwright::palette::AXES;
 use eframe::egui::{
     Color32, CursorIcon, EventFilter, FontId, Key, Modifiers, Painter, Popup, Pos2, Rect, Response, Role, Sense, Shape,
     Stroke, Ui, Vec2, WidgetInfo, vec2,
@@ -17,9 +19,9 @@ const STEP: f64 = 0.1;
 
 /// The handles with their names and the colours of their axes.
 const HANDLES: [(Handle, &str, Color32); 3] = [
-    (Handle::X, "move-x", Color32::from_rgb(224, 82, 76)),
-    (Handle::Y, "move-y", Color32::from_rgb(92, 178, 92)),
-    (Handle::Turn, "turn-z", Color32::from_rgb(84, 140, 232)),
+    (Handle::X, "move-x", theme::ink(AXES[0])),
+    (Handle::Y, "move-y", theme::ink(AXES[1])),
+    (Handle::Turn, "turn-z", theme::ink(AXES[2])),
 ];
 
 /// A part of the window with the camera that shows it.
@@ -157,8 +159,7 @@ fn extent(painter: &Painter, sight: &Sight<'_>, (low, high): (DVec3, DVec3), giz
     let placed = |x: f64, y: f64| shown.foot + turn.rotate(DVec2::new(x, y) - gizmo.foot.truncate()).extend(0.0);
     let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
     let line: Vec<Pos2> = corners.into_iter().filter_map(|(x, y)| sight.at(placed(x, y))).collect();
-    let [r, g, b] = palette::ACCENT;
-    painter.add(Shape::closed_line(line, Stroke::new(1.5, Color32::from_rgb(r, g, b))));
+    painter.add(Shape::closed_line(line, Stroke::new(1.5, theme::ink(palette::CHOSEN))));
 }
 
 /// A text next to a handle.

@@ -24,9 +24,14 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
             }
         });
         ui.checkbox(&mut placement.centre, known.t("centre"));
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             if ui.button(known.t("lay-flat")).clicked() {
                 placement.turn = laid_flat(known, &placement);
+            }
+            let text = known.t(if known.project().preform { "orient-preform" } else { "orient" });
+            let oriented = ui.add_enabled(known.jobs.orient_job.is_none(), Button::new(text));
+            if oriented.on_hover_text(known.t("orient-hint")).clicked() {
+                queue.push(Action::Orient);
             }
             let (by_face, solid) = (known.t("lay-by-face"), known.plans.own.scene.mesh().is_some());
             if ui.add_enabled(solid, Button::selectable(view.state.laying, by_face)).clicked() {

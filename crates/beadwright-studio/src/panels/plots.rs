@@ -4,10 +4,12 @@ use super::{process, robot, words};
 use crate::actions::Action;
 use crate::jobs::Ask;
 use crate::known::{Known, Queue, View};
+use crate::theme::ink;
+use beadwright::palette::CURVES;
 use beadwright::program::PositionerAxis;
 use beadwright::report::{bead_window, plot as page};
-use beadwright::robot::{Pose, Reach, Stop};
-use eframe::egui::{Color32, Rangef, Response, Ui};
+use beadwright::robot::{Pose, Reach, Stop, Suggestion};
+use eframe::egui::{Rangef, Response, Ui};
 use egui_plot::{AxisHints, HLine, Legend, Line, LineStyle, Plot, PlotPoints};
 
 /// Maximum number of points drawn for a curve.
@@ -15,9 +17,6 @@ const POINTS: usize = 2000;
 
 /// Spacing of the numbers on an axis in screen points, from barely visible to clear; the plots are small here.
 const SPACING: Rangef = Rangef { min: 25.0, max: 40.0 };
-
-/// The colours of the positioner's axes.
-const AXES: [Color32; 2] = [Color32::from_rgb(52, 132, 240), Color32::from_rgb(252, 168, 48)];
 
 /// Limits no farther than this from an angle are drawn, °.
 const HALF_TURN: f64 = 180.0;
@@ -120,6 +119,7 @@ fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
     for finding in &reach.findings {
         ui.colored_label(ui.visuals().warn_fg_color, finding.sentence());
     }
+    suggestion(known, queue, ui);
     ui.label(known.t("plot-joints"));
     let plot = Plot::new("joints").height(2.0 * HEIGHT).legend(Legend::default()).x_axis_label(known.t("axis-time"));
     plot.allow_scroll(false).show(ui, |plot| {
@@ -129,6 +129,29 @@ fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
         }
     });
     positioner(known, reach, ui);
+}
+
+/// Looks for a place of the part that the cell reaches better, and says where it is.
+fn suggestion(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
+    let ready = known.jobs.suggest_job.is_none() && known.jobs.cell.is_some();
+    let button = ui.add_enabled(ready, eframe::egui::Button::new(known.t("suggest")));
+    if button.on_hover_text(known.t("suggest-hint")).clicked() {
+        queue.push(Action::Suggest);
+    }
+    if known.jobs.suggest_job.is_some() {
+        ui.spinner();
+    }
+    match &known.jobs.suggested {
+        Some(Some(Suggestion { place, margin, now, .. })) => {
+            let [x, y, z] = place.position;
+            let now = now.map_or(String::new(), |now| format!(" ({} {now:.1}°)", known.t("suggest-now")));
+            let text = known.t("suggest-place");
+            let turn = place.rotation;
+            ui.label(format!("{text} x {x:.0} y {y:.0} z {z:.0} mm, {turn:.0}°: {margin:.1}°{now}"));
+        }
+        Some(None) => drop(ui.colored_label(ui.visuals().warn_fg_color, known.t("suggest-none"))),
+        None => {}
+    }
 }
 
 /// The angles of the positioner's axes, with their limits.
@@ -144,7 +167,8 @@ fn positioner(known: Known<'_>, reach: &Reach, ui: &mut Ui) {
     let plot = Plot::new("positioner").height(1.5 * HEIGHT).legend(Legend::default()).custom_x_axes(vec![time]);
     let plot = plot.custom_y_axes(vec![AxisHints::new_y().label_spacing(SPACING)]);
     plot.allow_scroll(false).show(ui, |plot| {
-        for (number, (axis, colour)) in known.axes().iter().zip(AXES).enumerate() {
+        for (number, (axis, colour)) in known.axes().iter().zip(&CURVES[1..]).enumerate() {
+            let colour = ink(*colour);
             let points = timed(reach, |stop, _| Some(stop.attitude.held?.angles[number]));
             let name = robot::axis_name(known, number);
             for limit in near_limits(axis, &points) {

@@ -1,13 +1,13 @@
-//! Questions that must be answered before work continues, and the list of keys.
+//! Questions that must be answered before work continues.
 
-use super::findings::sentence;
-use crate::actions::{Action, ENTRIES};
+use super::findings::whole;
+use crate::actions::Action;
 use crate::known::{Known, Queue, View};
 use crate::planner::Failure;
 use crate::view::Side;
 use beadwright::Finding;
 use beadwright::model::{Placement, Units};
-use eframe::egui::{Align2, Button, DragValue, Grid, Key, TextEdit, Ui, Window, vec2};
+use eframe::egui::{Align2, Button, DragValue, Key, TextEdit, Ui, Window, vec2};
 
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &Ui) {
     lost(known, queue, ui);
@@ -21,7 +21,6 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     undoing(known, queue, ui);
     doubted(known, view, queue, ui);
     path(known, view, queue, ui);
-    keys(known, view, ui);
 }
 
 /// A path to be typed, where the desktop has no file dialogs.
@@ -101,7 +100,7 @@ fn doubted(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &Ui) {
     }
     window(known.t("doubted-title")).show(ui.ctx(), |ui| {
         let serious: Vec<&Finding> = known.plans.own.serious().collect();
-        serious.iter().take(SHOWN).for_each(|finding| drop(ui.label(sentence(&finding.sentence()))));
+        serious.iter().take(SHOWN).for_each(|finding| drop(ui.label(whole(known, finding))));
         if serious.len() > SHOWN {
             ui.weak(format!("… {}", serious.len() - SHOWN));
         }
@@ -189,19 +188,4 @@ fn height(known: Known<'_>, queue: &mut Queue, ui: &Ui, text: &str) {
             }
         });
     });
-}
-
-fn keys(known: Known<'_>, view: &mut View<'_>, ui: &Ui) {
-    let mut open = view.state.keys;
-    Window::new(known.t("keys")).open(&mut open).show(ui.ctx(), |ui| {
-        Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-            let page = cfg!(target_arch = "wasm32");
-            for entry in ENTRIES.iter().filter(|entry| !page || entry.action != Action::Quit) {
-                ui.label(known.t(entry.text));
-                ui.monospace(entry.key.map(|key| ui.ctx().format_shortcut(&key)).unwrap_or_default());
-                ui.end_row();
-            }
-        });
-    });
-    view.state.keys = open;
 }

@@ -57,6 +57,6 @@ fn figures(known: Known<'_>, ui: &mut Ui, figures: &Figures) {
 fn legend(known: Known<'_>, ui: &mut Ui) {
     let Some(range) = known.plans.own.scene.scan().map(|scan| scan.range()) else { return };
     ui.label(format!("{:.2} mm", -range));
-    solid::scale(ui, |part| palette::at(Colour::HeightError, part, true));
+    solid::scale(ui, |part| palette::at(Colour::HeightError, part));
     ui.label(format!("+{range:.2} mm"));
 }

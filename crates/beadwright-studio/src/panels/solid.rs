@@ -3,11 +3,12 @@
 use super::{bead, distortion, place, robot, scan, section, stock};
 use crate::actions::Action;
 use crate::known::{Known, Queue, View};
+use crate::theme;
 use crate::view::Mode;
 use crate::view3d::{Colour, Pick, Style, face, palette};
 use beadwright::model::Placement;
 use beadwright::robot::Frame;
-use eframe::egui::{Color32, ComboBox, DragValue, Rect, Role, Sense, Ui, WidgetInfo, vec2};
+use eframe::egui::{ComboBox, DragValue, Rect, Role, Sense, Ui, WidgetInfo, vec2};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
@@ -138,13 +139,12 @@ fn lean(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
 
 /// What the colours mean: a patch for each kind of pass in the plan, or a scale whose ends can be changed.
 pub(super) fn legend(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
-    let dark = !known.window.settings.light;
     if view.state.colour == Colour::Kind {
         let passes = || known.plans.own.layers.iter().flat_map(|layer| &layer.passes);
         let used = |kind| passes().any(|pass| palette::kind(pass.kind) == palette::kind(kind));
         for kind in palette::KINDS.into_iter().filter(|kind| used(*kind)) {
             let (place, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
-            ui.painter().rect_filled(place, 2.0, colour(palette::kind(kind)));
+            ui.painter().rect_filled(place, 2.0, theme::ink(palette::kind(kind)));
             ui.label(known.language().word("kind", kind.name()));
         }
         return;
@@ -183,7 +183,7 @@ pub(super) fn legend(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
         }
     };
     end(ui, &mut ends[0], known.t("range-low"), f64::NEG_INFINITY..=high - least);
-    scale(ui, |part| palette::at(colour, part, dark));
+    scale(ui, |part| palette::at(colour, part));
     end(ui, &mut ends[1], known.t("range-high"), low + least..=f64::INFINITY);
     if ends != [low, high] {
         view.state.range = Some((colour, ends));
@@ -205,12 +205,8 @@ pub(super) fn scale(ui: &mut Ui, colour_at: impl Fn(f64) -> palette::Rgb) {
             x.min + x.span() * part(i) as f32..=x.min + x.span() * part(i + 1) as f32,
             place.y_range(),
         );
-        ui.painter().rect_filled(strip, 0.0, colour(colour_at(part(i))));
+        ui.painter().rect_filled(strip, 0.0, theme::ink(colour_at(part(i))));
     }
-}
-
-fn colour([r, g, b]: [u8; 3]) -> Color32 {
-    Color32::from_rgb(r, g, b)
 }
 
 /// The size of the plate, and what the grid on it shows.

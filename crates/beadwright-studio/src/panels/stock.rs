@@ -16,7 +16,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
         if let Some(range) = range.filter(|_| view.state.stock) {
             ui.label(none);
             // The lower half of the colours is for metal that is missing.
-            solid::scale(ui, |part| palette::at(Colour::HeightError, 0.5 + 0.5 * part, true));
+            solid::scale(ui, |part| palette::at(Colour::HeightError, 0.5 + 0.5 * part));
             ui.label(format!("{range:.1} mm"));
         }
     });

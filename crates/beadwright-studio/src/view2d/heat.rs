@@ -1,29 +1,16 @@
 //! The colours of heights.
 
+use crate::theme::ink;
 use beadwright::deposit::{Picture, picture};
+use beadwright::palette;
 use eframe::egui::{Color32, ColorImage};
 
 /// The colour of a void.
-pub(super) const VOID: Color32 = Color32::from_rgb(232, 0, 150);
-
-/// Height in nominal bead heights, and its colour: as in the report.
-const HEAT: [(f64, [f64; 3]); 7] = [
-    (0.0, [38.0, 43.0, 92.0]),
-    (0.35, [45.0, 104.0, 190.0]),
-    (0.75, [150.0, 196.0, 226.0]),
-    (1.0, [238.0, 240.0, 234.0]),
-    (1.3, [250.0, 176.0, 84.0]),
-    (1.6, [214.0, 62.0, 42.0]),
-    (2.0, [110.0, 0.0, 22.0]),
-];
+pub(super) const VOID: Color32 = ink(palette::VOID);
 
 /// The colour of a height, in nominal bead heights.
 pub fn heat(height: f64) -> Color32 {
-    let above = HEAT.iter().position(|(at, _)| *at >= height).unwrap_or(HEAT.len() - 1).max(1);
-    let ((low, a), (high, b)) = (HEAT[above - 1], HEAT[above]);
-    let part = ((height - low) / (high - low)).clamp(0.0, 1.0);
-    let [r, g, b] = [0, 1, 2].map(|i| (a[i] + (b[i] - a[i]) * part).round() as u8);
-    Color32::from_rgb(r, g, b)
+    ink(palette::height(height))
 }
 
 /// The height in a pixel, in nominal bead heights; `None` where there is no metal, or a void.

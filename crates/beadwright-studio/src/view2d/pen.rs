@@ -2,6 +2,7 @@
 
 use super::heat::{VOID, heat};
 use super::{Drawing, Eye, Show};
+use crate::theme;
 use crate::view3d::palette;
 use beadwright::deposit::picture;
 use beadwright::layer::Layer;
@@ -11,11 +12,7 @@ use glam::DVec2;
 
 /// The colour of a kind of pass.
 fn colour(kind: PassKind) -> Color32 {
-    ink(palette::kind(kind))
-}
-
-fn ink([r, g, b]: palette::Rgb) -> Color32 {
-    Color32::from_rgb(r, g, b)
+    theme::ink(palette::kind(kind))
 }
 
 /// Draws in the coordinates of the part.
@@ -60,7 +57,7 @@ impl Pen<'_> {
     pub(super) fn chosen(&self, subject: &Drawing<'_>) {
         let Some((pass, piece)) = subject.chosen else { return };
         let Some(pass) = subject.layer.passes.get(pass) else { return };
-        let ink = ink(palette::ACCENT);
+        let ink = theme::ink(palette::CHOSEN);
         let pieces = subject.pieces(pass).flat_map(|piece| [piece.from, piece.to]);
         let points = pieces.map(|p| self.at(p.truncate())).collect();
         self.painter.add(Shape::line(points, Stroke::new(2.5, ink)));
@@ -98,8 +95,8 @@ impl Pen<'_> {
                 self.painter.add(Shape::line([start].into_iter().chain(points).collect(), Stroke::new(1.5, ink)));
             }
             if show.starts {
-                self.painter.circle_filled(start, 3.5, self::ink(palette::START));
-                self.painter.circle_filled(end, 2.5, self::ink(palette::END));
+                self.painter.circle_filled(start, 3.5, theme::ink(palette::START));
+                self.painter.circle_filled(end, 2.5, theme::ink(palette::END));
             }
             torch = Some(end);
         }
@@ -156,9 +153,9 @@ impl Pen<'_> {
             self.painter.text(at, Align2::LEFT_CENTER, format!("{mark:.0}"), font.clone(), ink);
         }
         self.painter.text(place.left_top() - vec2(0.0, 8.0), Align2::LEFT_BOTTOM, caption, font.clone(), ink);
-        let void = Rect::from_min_size(place.left_bottom() + vec2(0.0, 8.0), vec2(12.0, 12.0));
-        self.painter.rect_filled(void, 0.0, VOID);
-        self.painter.text(void.right_center() + vec2(4.0, 0.0), Align2::LEFT_CENTER, "< 0.35", font, ink);
+        let patch = Rect::from_min_size(place.left_bottom() + vec2(0.0, 8.0), vec2(12.0, 12.0));
+        self.painter.rect_filled(patch, 0.0, VOID);
+        self.painter.text(patch.right_center() + vec2(4.0, 0.0), Align2::LEFT_CENTER, "< 0.35", font, ink);
     }
 
     pub(super) fn note(&self, corner: Align2, text: &str) {

@@ -2,18 +2,21 @@
 
 use super::pen::Pen;
 use crate::steps::Steps;
+use crate::theme::ink;
 use beadwright::fill::{hybrid, one_loop};
+use beadwright::palette;
+use beadwright::pass::PassKind;
 use eframe::egui::{Align2, Color32, FontId, Pos2, Rect, Shape, Stroke, vec2};
 use glam::DVec2;
 
 /// Pockets; those that are filled in their own way have a thick outline.
-const POCKET: Color32 = Color32::from_rgb(0x9b, 0x6c, 0xf0);
+const POCKET: Color32 = ink(palette::STEP);
 /// Skeleton regions.
-const REGION: Color32 = Color32::from_rgb(0x0f, 0xa3, 0xa5);
+const REGION: Color32 = ink(palette::kind(PassKind::Skeleton));
 /// Rings before they are joined.
-const RING: Color32 = Color32::from_rgb(0xe0, 0x3c, 0x9c);
+const RING: Color32 = ink(palette::STEP);
 /// Places where two rings become one.
-const FLIP: Color32 = Color32::from_rgb(0xf2, 0xd0, 0x2c);
+const FLIP: Color32 = ink(palette::FLIP);
 
 /// What the colours mean.
 #[derive(Debug, Clone, Copy, Default)]

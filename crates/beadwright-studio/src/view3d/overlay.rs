@@ -1,6 +1,8 @@
 //! What is painted over the picture: the axes, a scale bar and the mark of a place.
 
 use super::camera::Camera;
+use crate::theme;
+use beadwright::palette::AXES;
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 use glam::DVec3;
 
@@ -37,9 +39,9 @@ pub fn ring(painter: &Painter, at: Pos2, colour: Color32) {
 
 fn axes(painter: &Painter, origin: Pos2, camera: &Camera, ink: Color32) {
     let mut axes = [
-        (DVec3::X, "x", Color32::from_rgb(224, 82, 76)),
-        (DVec3::Y, "y", Color32::from_rgb(92, 178, 92)),
-        (DVec3::Z, "z", Color32::from_rgb(84, 140, 232)),
+        (DVec3::X, "x", theme::ink(AXES[0])),
+        (DVec3::Y, "y", theme::ink(AXES[1])),
+        (DVec3::Z, "z", theme::ink(AXES[2])),
     ];
     // Nearest last, so that it is on top.
     axes.sort_by(|a, b| a.0.dot(camera.back()).total_cmp(&b.0.dot(camera.back())));

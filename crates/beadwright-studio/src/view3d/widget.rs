@@ -7,6 +7,7 @@ use super::pick::{Pick, pick};
 use super::scene::Scene;
 use super::style::Style;
 use super::{gpu, overlay};
+use crate::theme::ink;
 use eframe::egui::{self, Color32, PointerButton, Rect, Sense, Ui, WidgetInfo, pos2};
 use eframe::egui_wgpu::{RenderState, wgpu};
 use glam::{DVec2, DVec3};
@@ -273,8 +274,7 @@ impl View3d {
     }
 
     fn say_no_adapter(&self, ui: &mut Ui, rect: Rect, dark: bool) {
-        let [r, g, b] = gpu::background(dark);
-        ui.painter().rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
+        ui.painter().rect_filled(rect, 0.0, ink(gpu::background(dark)));
         let inner = rect.shrink2(egui::vec2(rect.width() * 0.1, rect.height() * 0.4));
         ui.put(inner, egui::Label::new(&self.no_adapter));
     }

@@ -71,13 +71,20 @@ fn the_project_file_is_read() {
     assert_eq!(keys(&project.write(None).unwrap()), keys(&file));
 }
 
+/// The picture that a line of the script makes, all of the window or a part of it.
+fn made_by(line: &str) -> Option<&str> {
+    let (part, rest) = line.split_once("picture ")?;
+    rest.split(' ').next().filter(|_| part.is_empty() || part.starts_with("CROP=") || part.starts_with("PRESS="))
+}
+
 #[test]
 fn the_pictures_are_there_and_made_by_the_script() {
     let text = text();
-    let shown: BTreeSet<&str> = text.split("](pictures/").skip(1).map(|rest| rest.split('.').next().unwrap()).collect();
+    let readme = std::fs::read_to_string(folder().join("../README.md")).unwrap();
+    let pictures = text.split("](pictures/").skip(1).chain(readme.split("](docs/pictures/").skip(1));
+    let shown: BTreeSet<&str> = pictures.map(|rest| rest.split('.').next().unwrap()).collect();
     let script = std::fs::read_to_string(folder().join("pictures.sh")).unwrap();
-    let made: BTreeSet<&str> =
-        script.lines().filter_map(|line| line.strip_prefix("picture ")?.split(' ').next()).collect();
+    let made: BTreeSet<&str> = script.lines().filter_map(|line| made_by(line)).collect();
     assert_eq!(shown, made);
     for name in shown {
         assert!(folder().join("pictures").join(format!("{name}.png")).is_file(), "{name}");

@@ -13,8 +13,6 @@ mod inside;
 mod listing;
 mod project;
 mod section;
-#[path = "../../../beadwright/tests/it/sight/mod.rs"]
-mod sight;
 mod space;
 mod studio;
 mod texts;

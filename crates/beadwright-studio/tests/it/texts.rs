@@ -1,6 +1,11 @@
 //! Words: both languages whole, none without use, none missing.
 
+use beadwright::Finding;
+use beadwright::check::CHECKS;
+use beadwright::warning::{Warning, WarningKind, Warnings};
 use beadwright_studio::text::{Language, table};
+use beadwright_studio::told;
+use glam::DVec2;
 use std::fs;
 use std::path::Path;
 
@@ -65,6 +70,49 @@ fn every_basic_parameter_is_one_of_the_profile_and_says_why() {
             assert!(Language::Chinese.find(&text).is_some(), "{text} is in no table");
         }
     }
+}
+
+/// Words that stay English: keys of profiles, units, coordinates, commands.
+fn is_plain(word: &str) -> bool {
+    const KEPT: [&str; 12] =
+        ["mm", "cm", "mm²", "x", "y", "z", "s", "J", "beadwright", "adapt", "deposition_speed", "at"];
+    let key = word.contains(['.', '_', '=', '°', '/']);
+    key || KEPT.contains(&word) || !word.contains(|c: char| c.is_ascii_alphabetic())
+}
+
+#[test]
+fn every_finding_is_told_in_chinese() {
+    let mut kinds: Vec<&str> = CHECKS.iter().map(|check| check.name).collect();
+    kinds.extend(WarningKind::ALL.map(|kind| kind.about().name));
+    kinds.push("lost-geometry");
+    for kind in &kinds {
+        let told = told::told(kind).unwrap_or_else(|| panic!("{kind} is not told"));
+        assert!(
+            [&told.name, &told.why, &told.remedy].iter().all(|text| text.chars().any(|c| c > '\u{3000}')),
+            "{kind}"
+        );
+    }
+    assert!(told::table().keys().all(|key| kinds.contains(&&**key)), "a kind of findings is not one of the library");
+    let mut sentences: Vec<(&str, String)> =
+        CHECKS.iter().map(|check| (check.name, check.example.to_owned())).collect();
+    for kind in WarningKind::ALL {
+        for count in [1, 3] {
+            let mut warnings = Warnings::default();
+            (0..count).for_each(|i| {
+                warnings.add(Warning { kind, layer: 2 * i, place: DVec2::new(1.5, -2.0), size: 12.25 }, 4.5)
+            });
+            sentences.extend(warnings.summaries().map(|summary| (kind.about().name, Finding::from(summary).text)));
+        }
+    }
+    for (kind, sentence) in sentences {
+        let said = told::told(kind).unwrap().say(&sentence).unwrap_or_else(|| panic!("{kind}: {sentence}"));
+        let numbers = |text: &str| text.chars().filter(char::is_ascii_digit).count();
+        assert_eq!(numbers(&said), numbers(&sentence), "{said} of {sentence}");
+        let breaks = |c: char| c.is_whitespace() || (c > '\u{3000}') || "(),:".contains(c);
+        let english: Vec<&str> = said.split(breaks).filter(|word| !is_plain(word)).collect();
+        assert!(english.is_empty(), "{english:?} in {said}");
+    }
+    assert_eq!(told::told("void").unwrap().say("Layer 3: something else."), None);
 }
 
 #[test]

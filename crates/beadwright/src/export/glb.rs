@@ -5,20 +5,12 @@
 use super::swept::{self, Body};
 use super::{Beads, ExportError, Format};
 use crate::model::solid::Solid;
+use crate::palette;
 use crate::pass::PassKind;
 use glam::DVec3;
 use serde_json::{Value, json};
 
 pub(super) const FORMAT: Format = Format { extension: "glb", purpose: "the shape as built, for viewers", write };
-
-/// Kinds of passes with their colours: red, green, blue, 0 to 1.
-const COLOURS: [(PassKind, [f64; 3]); 5] = [
-    (PassKind::Contour, [0.12, 0.44, 0.84]),
-    (PassKind::Infill, [0.91, 0.53, 0.16]),
-    (PassKind::Skeleton, [0.49, 0.34, 0.76]),
-    (PassKind::Wall, [0.06, 0.55, 0.55]),
-    (PassKind::Spot, [0.06, 0.55, 0.55]),
-];
 
 /// From mm with z upwards to m with y upwards, column by column.
 const NODE: [f64; 16] = [1e-3, 0.0, 0.0, 0.0, 0.0, 0.0, -1e-3, 0.0, 0.0, 1e-3, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
@@ -31,10 +23,10 @@ const INDICES: u32 = 34963;
 fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     let bodies = swept::bodies(beads);
     let mut scene = Scene::default();
-    for (kind, colour) in COLOURS {
+    for kind in palette::KINDS.into_iter().chain([PassKind::Spot]) {
         let solid = joined(bodies.iter().filter(|body| body.kind == kind));
         if !solid.triangles.is_empty() {
-            scene.add(kind.name(), colour, &solid);
+            scene.add(kind.name(), palette::linear(palette::kind(kind)), &solid);
         }
     }
     if scene.primitives.is_empty() {

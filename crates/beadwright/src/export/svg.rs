@@ -4,6 +4,7 @@
 use super::{ExportError, LayerFormat};
 use crate::layer::Layer;
 use crate::number::{fixed, push_fixed};
+use crate::palette;
 use crate::pass::{Pass, PassKind, Segment};
 use glam::DVec2;
 use planar::{Bounds, Polygon, Ring};
@@ -14,13 +15,8 @@ pub(super) const FORMAT: LayerFormat =
 /// Width of outlines and middles, mm.
 const HAIRLINE: f64 = 0.1;
 
-fn colour(kind: PassKind) -> &'static str {
-    match kind {
-        PassKind::Contour => "#1f6fd6",
-        PassKind::Infill => "#e8862a",
-        PassKind::Skeleton => "#7e57c2",
-        PassKind::Wall | PassKind::Spot => "#0f8b8d",
-    }
+fn colour(kind: PassKind) -> String {
+    palette::hex(palette::kind(kind))
 }
 
 fn write(layer: &Layer) -> Result<Vec<u8>, ExportError> {

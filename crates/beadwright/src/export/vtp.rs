@@ -3,6 +3,7 @@
 //! In ParaView, the filter Tube with the radius by `width` shows the beads.
 
 use super::{Beads, ExportError, Format, Piece};
+use crate::palette;
 use crate::pass::PassKind;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -16,7 +17,7 @@ const KINDS: [PassKind; 5] = [PassKind::Contour, PassKind::Infill, PassKind::Ske
 fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     let pieces = beads.pieces();
     let mut text = format!(
-        "<?xml version=\"1.0\"?>\n<!-- mm, s; kind: 0 contour, 1 infill, 2 skeleton, 3 wall -->\n\
+        "<?xml version=\"1.0\"?>\n<!-- mm, s; kind: 0 contour, 1 infill, 2 skeleton, 3 wall, 4 spot; colour: of the kind -->\n\
          <VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n\
          <Piece NumberOfPoints=\"{}\" NumberOfLines=\"{}\">\n<Points>\n",
         2 * pieces.len(),
@@ -50,6 +51,9 @@ fn write(beads: &Beads<'_>) -> Result<Vec<u8>, ExportError> {
     number("layer", |p| p.layer);
     number("pass", |p| p.pass);
     number("kind", |p| KINDS.iter().position(|kind| *kind == p.kind).unwrap_or_default());
+    // As bytes, so that viewers show it without a map.
+    let colours = pieces.iter().flat_map(|p| palette::kind(p.kind));
+    push(&mut text, "type=\"UInt8\" Name=\"colour\" NumberOfComponents=\"3\"", colours);
     if !beads.profile.layers.are_level() {
         let normals = pieces.iter().flat_map(|p| p.normal.to_array()).flat_map(f64::to_le_bytes);
         push(&mut text, "type=\"Float64\" Name=\"normal\" NumberOfComponents=\"3\"", normals);

@@ -2,6 +2,7 @@
 
 use super::{FileHash, Finding, Log, Part, PassRow, Quantity, Scanned, Totals, Trust, heights};
 use crate::number::{fixed, hours};
+use crate::palette;
 use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::{Row, Sheet};
 use crate::report::sketch::Sketch;
@@ -14,9 +15,6 @@ const MOST: usize = 500;
 const MOST_POINTS: usize = 20_000;
 /// A place as a picture shows it.
 type View = fn(DVec3) -> DVec2;
-/// Colours of a picture: welded, and marked.
-const PLAIN: &str = "#9ca3af";
-const MARKED: &str = "#d55e00";
 
 /// The page; `chain` is the hash that covers all passes.
 pub(super) fn page(part: &Part<'_>, chain: String) -> Sheet {
@@ -110,8 +108,8 @@ fn pictures(sheet: &mut Sheet, part: &Part<'_>) {
             let bounds = Bounds::of(lines.iter().chain(&marked).flatten().copied())?;
             let size = bounds.size().max_element();
             let mut sketch = Sketch::new(bounds, name);
-            lines.iter().for_each(|line| _ = sketch.line(line, false, PLAIN, size / 600.0));
-            marked.iter().for_each(|line| _ = sketch.line(line, false, MARKED, size / 120.0));
+            lines.iter().for_each(|line| _ = sketch.line(line, false, palette::missing(false), size / 600.0));
+            marked.iter().for_each(|line| _ = sketch.line(line, false, palette::mark(false), size / 120.0));
             Some((format!("{name}: planned paths, and in orange what is doubtful"), sketch.svg()))
         })
         .collect();

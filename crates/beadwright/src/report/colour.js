@@ -1,15 +1,15 @@
 // What beads can be coloured by: the value of a piece, the range over the whole part, and its words.
 
 const WHITE = [255, 255, 255], BLACK = [0, 0, 0];
-// In the order of their numbers (encode.rs). Their colours are those of the studio: people without red, green or blue cones tell them apart too.
-const KINDS = ["contour", "infill", "skeleton", "wall"];
+const KINDS = INKS.kinds.map(([name]) => name);
 let colours = {};
 
 function readColours() {
   const style = getComputedStyle(document.documentElement);
-  const names = ["stage", "slice", "outline", "travel", ...KINDS, "start", "end", "mark", "text", "soft", "accent", "line", "wait"];
+  const names = ["stage", "slice", "outline", "travel", "contour", "start", "end", "mark", "text", "soft", "accent", "line", "wait", "chosen", "bad"];
   colours = Object.fromEntries(names.map(name => [name, style.getPropertyValue("--" + name).trim()]));
-  colours.kinds = KINDS.map(name => channels(colours[name]));
+  // In the order of their numbers (encode.rs).
+  colours.kinds = INKS.kinds.map(([, colour]) => colour);
 }
 
 const channels = hex => [1, 3, 5].map(i => parseInt(hex.slice(i, i + 2), 16));
@@ -25,14 +25,15 @@ function clock(seconds) {
 // The coldest and the hottest start of all passes, °C.
 const warmth = data.warmth.flatMap(({ starts }) => starts).reduce(([low, high], t) => [Math.min(low, t), Math.max(high, t)], [Infinity, -Infinity]);
 
-// `field` is the number of the value in the shader of scene.js; `flows` says that it changes within a piece.
+// `field` is the number of the value in the shader of scene.js; `flows` says that it changes within a piece. The ends of the colours are
+// words, or numbers with a unit of `per`, which can be changed; `whole` is then the range before.
 const CHOICES = {
   kind: { field: 0 },
-  order: { field: 1, flows: true, ramp: RAMP, range: [0, 1], of: (pass, i, t, layer) => t / (layer.seconds || 1), text: part => part ? "last" : "first" },
-  width: { field: 2, ramp: RAMP, range: data.ranges.width, of: (pass, i) => after(pass, i)[0], text: mm => `${mm.toFixed(2)} mm` },
-  speed: { field: 3, ramp: RAMP, range: data.ranges.speed, of: (pass, i) => after(pass, i)[1], text: v => `${v.toFixed(1)} mm/s` },
-  time: { field: 4, flows: true, ramp: RAMP, range: [0, total], of: (pass, i, t, layer) => whenOf(layer, t), text: clock },
-  warm: { field: 5, ramp: EMBER, range: warmth, of: pass => pass.celsius, text: celsius => `${celsius} °C` },
+  order: { field: 1, flows: true, ramp: RAMP, range: [0, 1], of: (pass, i, t, layer) => t / (layer.seconds || 1), words: ["first", "last"] },
+  width: { field: 2, ramp: RAMP, range: data.ranges.width, of: (pass, i) => after(pass, i)[0], unit: "mm", digits: 2 },
+  speed: { field: 3, ramp: RAMP, range: data.ranges.speed, of: (pass, i) => after(pass, i)[1], unit: "mm/s", digits: 1 },
+  time: { field: 4, flows: true, ramp: RAMP, range: [0, total], of: (pass, i, t, layer) => whenOf(layer, t), unit: "min", digits: 1, per: 60 },
+  warm: { field: 5, ramp: EMBER, range: warmth, of: pass => pass.celsius, unit: "°C", digits: 0 },
   heat: { field: 0 },
 };
 
@@ -46,11 +47,42 @@ function colourOf(pass, i, t, layer) {
 }
 
 function showKey() {
-  const { ramp, range, text } = CHOICES[shown.by];
+  const { ramp, range, words, unit, digits, per = 1, whole } = CHOICES[shown.by];
   $("key-kind").hidden = Boolean(ramp) || shown.by === "heat";
   $("key-heat").hidden = shown.by !== "heat";
   $("key-ramp").hidden = !ramp;
   if (!ramp) return;
-  [$("ramp-low").textContent, $("ramp-high").textContent] = range.map(text);
+  const texts = range.map(value => (value / per).toFixed(digits)), same = !words && range[0] === range[1] && !whole;
+  [$("ramp-low").textContent, $("ramp-high").textContent] = words ?? (same ? ["", `${texts[0]} ${unit}`] : ["", unit]);
+  for (const [i, field] of [$("range-low"), $("range-high")].entries()) {
+    field.hidden = Boolean(words) || same;
+    Object.assign(field, { value: texts[i], step: 10 ** -digits });
+  }
+  $("ramp").hidden = same;
+  $("range-reset").hidden = !whole;
   drawKey($("ramp"), part => rampAt(part, ramp));
+}
+
+// Gives the colours a range: both ends from their fields, of which those left as they were keep what they round.
+function setRange() {
+  const choice = CHOICES[shown.by], { per = 1, digits } = choice;
+  const range = ["range-low", "range-high"].map((id, i) => {
+    const { value } = $(id), before = choice.range[i];
+    return value === (before / per).toFixed(digits) ? before : value === "" ? NaN : per * Number(value);
+  });
+  // Ends that meet or cross would leave no colours between them.
+  if (range[0] < range[1]) {
+    choice.whole ??= choice.range;
+    choice.range = range;
+  }
+  showKey();
+  redraw();
+}
+
+function resetRange() {
+  const choice = CHOICES[shown.by];
+  choice.range = choice.whole;
+  delete choice.whole;
+  showKey();
+  redraw();
 }

@@ -1,9 +1,9 @@
 // The height field of a layer as an image: encode.rs describes the format.
 
 const EMPTY = 0, VOID = 1, FIRST_HEIGHT = 2, FULL_SCALE = 2;
-const VOID_COLOUR = [232, 0, 150];
+const VOID_COLOUR = INKS.void, VOID_RIM = VOID_COLOUR.map(v => 0.4 * v);
 // Height in nominal bead heights, and its colour.
-const HEAT = [[0, [38, 43, 92]], [0.35, [45, 104, 190]], [0.75, [150, 196, 226]], [1, [238, 240, 234]], [1.3, [250, 176, 84]], [1.6, [214, 62, 42]], [2, [110, 0, 22]]];
+const HEAT = INKS.heights;
 
 function heatAt(height) {
   const i = Math.max(1, HEAT.findIndex(([at]) => at >= height)), [low, a] = HEAT[i - 1], [high, b] = HEAT[i];
@@ -43,7 +43,7 @@ function voidRim(values, columns, x, y, pixel) {
 function drawMap(ctx, map, scale) {
   ctx.imageSmoothingEnabled = false;
   ctx.drawImage(map.canvas, map.x, map.y, map.width, map.height);
-  ctx.strokeStyle = "#5b0040";
+  ctx.strokeStyle = `rgb(${VOID_RIM.join(" ")})`;
   ctx.lineWidth = 1.2 / scale;
   ctx.stroke(map.rim);
 }

@@ -10,6 +10,7 @@
 //! | [`svg`] | one layer as a standalone picture |
 //! | [`bent`] | a body that bends, for a page |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
+//! | `colours` | the palette for styles and scripts |
 //! | [`angles`] | plots over the raster angle |
 //! | [`bead_window`] | width/height of a bead library over its first input |
 //! | `positioner` | the angles of the axes that turn the part |
@@ -25,6 +26,7 @@
 pub mod angles;
 pub mod bead_window;
 pub mod bent;
+mod colours;
 pub mod encode;
 mod lie;
 pub mod overhang;
@@ -86,6 +88,8 @@ pub struct Report {
     speeds: Range,
     kinds: BTreeSet<PassKind>,
     figures: Option<Figures>,
+    /// The worst layer's void, overfill and metal outside, % of its area.
+    worst: [f64; 3],
     /// The layer in the middle, for plots over the raster angle.
     middle: Layer,
 }
@@ -108,6 +112,7 @@ impl Report {
             speeds: Range::default(),
             kinds: BTreeSet::new(),
             figures: None,
+            worst: [0.0; 3],
             middle: Layer::default(),
         }
     }
@@ -129,7 +134,10 @@ impl Report {
         self.warmth.push((layer.temperatures.iter().map(|t| t.start).collect(), waits));
         self.measure(layer);
         if let Some(judgement) = judgement {
-            self.figures.get_or_insert_default().add(&judgement.figures);
+            let figures = &judgement.figures;
+            self.figures.get_or_insert_default().add(figures);
+            let worse = [figures.void_percent(), figures.overfill_percent(), figures.outside_percent()];
+            self.worst = [0, 1, 2].map(|i| f64::max(self.worst[i], worse[i]));
             self.maps.push(judgement.picture.as_ref().map(encode::map).unwrap_or_default());
         }
     }
@@ -158,12 +166,12 @@ impl Report {
         let middle = profile.fill_settings(self.middle.index);
         let values = [
             ("title", escape(&header.part)),
-            ("css", include_str!("page.css").to_owned()),
+            ("css", colours::css() + include_str!("page.css")),
             ("sentence", tables::sentence(header, summary, profile)),
             ("state", tables::state(summary, findings)),
             ("refused", tables::refused(summary)),
             ("kinds", tables::kinds(&self.kinds)),
-            ("totals", tables::totals(header, summary, profile, self.figures.as_ref())),
+            ("totals", tables::totals(header, summary, profile, self.figures.as_ref().map(|all| (all, self.worst)))),
             ("process", tables::process(header, profile)),
             ("angles", angles::section(&self.middle, profile.fill.strategy.strategy(), &middle)),
             ("positioner", self.turns.as_ref().map(positioner::Turns::section).unwrap_or_default()),
@@ -175,12 +183,13 @@ impl Report {
             (
                 "js",
                 [
+                    &*colours::js(),
                     include_str!("inflate.js"),
                     include_str!("layers.js"),
                     include_str!("layout.js"),
                     include_str!("lie.js"),
-                    include_str!("heat.js"),
                     include_str!("ramp.js"),
+                    include_str!("heat.js"),
                     include_str!("colour.js"),
                     include_str!("picture.js"),
                     include_str!("camera.js"),
@@ -214,8 +223,13 @@ impl Report {
         let surfaces: Vec<_> = self.profile.layers.charts().map(lie::surface).collect();
         let surfaces = json!(surfaces);
         let ranges = json!({ "width": self.widths.ends(), "speed": self.speeds.ends() });
+        let check = &self.profile.check;
+        let mut limits = json!({ "voids": check.max_void, "overfill": check.max_overfill });
+        if let Some(interpass) = &self.profile.interpass {
+            limits["hottest"] = interpass.max_temperature.into();
+        }
         format!(
-            "{{\"bead\":{bead},\"stacked\":{stacked},\"ranges\":{ranges},\"times\":{times},\"warmth\":{warmth},\"lies\":{lies},\"surfaces\":{surfaces},\"layers\":[{layers}],\"maps\":[{maps}]}}"
+            "{{\"bead\":{bead},\"stacked\":{stacked},\"ranges\":{ranges},\"limits\":{limits},\"times\":{times},\"warmth\":{warmth},\"lies\":{lies},\"surfaces\":{surfaces},\"layers\":[{layers}],\"maps\":[{maps}]}}"
         )
     }
 

@@ -2,15 +2,12 @@
 
 use crate::model::Mesh;
 use crate::number::fixed;
+use crate::palette::{LEANS, LYING, Rgb, hex};
 use glam::{DVec2, DVec3};
 
 /// Maximum number of faces drawn; with more, the file would be too large for browsers.
 const MOST_FACES: usize = 200_000;
 
-/// The upper limit of the lean from the vertical in each band, °, and its colour.
-const BANDS: [(f64, &str); 4] = [(30.0, "#c9d4df"), (45.0, "#f2d06b"), (60.0, "#ee9a4d"), (90.0, "#cf4a3f")];
-/// The colour of what lies on the plate.
-const PLATE: &str = "#7d8894";
 /// Faces this close to the lowest point lie on the plate, as a fraction of the part's extent.
 const ON_PLATE: f64 = 1e-3;
 
@@ -22,7 +19,7 @@ pub struct TooMany(pub usize);
 /// A downward face.
 struct Face {
     corners: [DVec3; 3],
-    colour: &'static str,
+    colour: Rgb,
     area: f64,
 }
 
@@ -60,7 +57,7 @@ pub fn svg(mesh: &Mesh) -> Result<String, TooMany> {
     for face in &faces {
         let points: Vec<String> =
             face.corners.iter().map(|c| seen(*c)).map(|p| format!("{},{}", fixed(p.x, 3), fixed(p.y, 3))).collect();
-        let Face { colour, .. } = face;
+        let colour = hex(face.colour);
         text += &format!("<polygon fill=\"{colour}\" stroke=\"{colour}\" points=\"{}\"/>\n", points.join(" "));
     }
     text += &legend(&faces, DVec2::new(low.x + left, -high.y), unit);
@@ -74,21 +71,23 @@ fn face(corners: [DVec3; 3], plate: f64) -> Option<Face> {
     let normal = across.try_normalize().filter(|normal| normal.z < -1e-9)?;
     let lean = (-normal.z).clamp(0.0, 1.0).asin().to_degrees();
     let lies = corners.iter().all(|corner| corner.z <= plate);
-    let band = BANDS.iter().find(|(most, _)| lean <= *most).map_or(BANDS[BANDS.len() - 1].1, |(_, colour)| colour);
-    Some(Face { corners, colour: if lies { PLATE } else { band }, area: across.length() / 2.0 })
+    let [.., (_, steepest)] = LEANS;
+    let band = LEANS.iter().find(|(most, _)| lean <= *most).map_or(steepest, |(_, colour)| *colour);
+    Some(Face { corners, colour: if lies { LYING } else { band }, area: across.length() / 2.0 })
 }
 
 /// Colours with the area that has them.
 fn legend(faces: &[Face], corner: DVec2, unit: f64) -> String {
-    let area = |colour: &str| faces.iter().filter(|face| face.colour == colour).map(|face| face.area).sum::<f64>();
+    let area = |colour: Rgb| faces.iter().filter(|face| face.colour == colour).map(|face| face.area).sum::<f64>();
     let mut from = 0.0;
-    let bands = BANDS.iter().map(|(most, colour)| {
+    let bands = LEANS.iter().map(|(most, colour)| {
         let name = format!("leans {from:.0} to {most:.0}°");
         from = *most;
         (name, *colour)
     });
-    let rows: Vec<(String, &str)> = std::iter::once(("on the plate".to_owned(), PLATE)).chain(bands).collect();
-    let row = |(k, (name, colour)): (usize, &(String, &str))| {
+    let rows: Vec<(String, Rgb)> = std::iter::once(("on the plate".to_owned(), LYING)).chain(bands).collect();
+    let row = |(k, (name, ink)): (usize, &(String, Rgb))| {
+        let colour = hex(*ink);
         let y = corner.y + 1.6 * unit * k as f64;
         format!(
             "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{colour}\"/><text x=\"{}\" y=\"{}\">{name}: {}</text>\n",
@@ -98,7 +97,7 @@ fn legend(faces: &[Face], corner: DVec2, unit: f64) -> String {
             fixed(unit, 3),
             fixed(corner.x + 1.4 * unit, 3),
             fixed(y + 0.85 * unit, 3),
-            fixed(area(colour), 1),
+            fixed(area(*ink), 1),
         )
     };
     rows.iter().enumerate().map(row).collect()

@@ -71,12 +71,12 @@ const MEASURES = { length: metres, seconds: clock, passes: v => `${v} passes`, s
 
 function drawBars() {
   const ctx = bars.getContext("2d"), width = bars.clientWidth, height = bars.clientHeight, n = heads.length;
-  const ratio = bars.width / width || 1, measure = $("measure").value, step = width / n;
-  const most = heads.reduce((m, head) => Math.max(m, head[measure]), 0) || 1;
+  const ratio = bars.width / width || 1, measure = $("measure").value, step = width / n, limit = data.limits[measure];
+  const most = heads.reduce((m, head) => Math.max(m, head[measure]), limit ?? 0) || 1, tallOf = value => (height - 4) * value / most;
   ctx.setTransform(ratio, 0, 0, ratio, 0, 0);
   ctx.clearRect(0, 0, width, height);
   const bar = (i, colour) => {
-    const gap = step > 3 ? Math.min(step * 0.15, 3) : 0, tall = Math.max(1, (height - 4) * heads[i][measure] / most);
+    const gap = step > 3 ? Math.min(step * 0.15, 3) : 0, tall = Math.max(1, tallOf(heads[i][measure]));
     ctx.fillStyle = colour;
     ctx.fillRect(i * step + gap / 2, height - tall, Math.max(step - gap, 1), tall);
     if (heads[i].warnings) {
@@ -84,10 +84,21 @@ function drawBars() {
       ctx.fillRect(i * step + gap / 2, height - tall - 3, Math.max(step - gap, 1), 2);
     }
   };
-  for (let i = 0; i < n; i++) bar(i, colours.travel + "88");
+  const above = heads.filter(head => head[measure] > limit).length;
+  for (let i = 0; i < n; i++) bar(i, (heads[i][measure] > limit ? colours.bad : colours.travel) + "88");
   bar(shown.index, colours.accent);
   if (step < 3) ctx.fillRect(shown.index * step - 1, 0, 3, height);
-  $("bars-now").textContent = MEASURES[measure](heads[shown.index][measure]);
+  const told = MEASURES[measure], bound = limit === undefined ? "" : told(limit);
+  if (bound) {
+    ctx.strokeStyle = colours.bad;
+    ctx.lineWidth = 1.5;
+    ctx.setLineDash([6, 4]);
+    ctx.strokeRect(-2, height - tallOf(limit), width + 4, height + 4);
+    ctx.setLineDash([]);
+  }
+  $("bars-now").textContent = told(heads[shown.index][measure]) + (bound && ` · limit ${bound}`);
+  const words = `${$("measure").selectedOptions[0].textContent} of every layer as a bar`;
+  bars.setAttribute("aria-label", words + (bound && `; ${above} of ${n} above the limit of ${bound}`));
 }
 
 function resize() {
@@ -178,6 +189,8 @@ function connect() {
   document.querySelectorAll("[name=colour]").forEach(radio => {
     radio.onchange = () => { shown.by = radio.value; showKey(); redraw(); };
   });
+  $("range-low").onchange = $("range-high").onchange = setRange;
+  $("range-reset").onclick = resetRange;
   document.querySelectorAll("[name=view]").forEach(radio => {
     radio.onchange = () => { $("stages").dataset.view = radio.value; resize(); };
   });
@@ -203,7 +216,7 @@ function connect() {
 
 // Keys for the whole page: layers, and passes one after another.
 function steer(event) {
-  if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey || event.target.matches("#progress, select, [type=radio]")) return;
+  if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey || event.target.matches("#progress, select, [type=radio], [type=number]")) return;
   const { key } = event, layers = { ArrowLeft: -1, ArrowRight: 1, PageDown: -1, PageUp: 1 }[key], passes = { "[": -1, "]": 1 }[key];
   if (key.startsWith("Page") && event.target !== solid && event.target !== picture) return;
   if (layers) show(wanted + layers * (event.shiftKey ? 10 : 1));

@@ -198,7 +198,7 @@ function drawWarnings(ctx, warnings) {
 function drawPicked(ctx, pass) {
   pass.path ??= pathOf(pass.xy);
   const wide = Math.max(0.4 * pass.along[0][0], 3 / view.scale);
-  for (const [width, colour] of [[wide + 2.4 / view.scale, colours.stage], [wide, colours.accent]]) {
+  for (const [width, colour] of [[wide + 2.4 / view.scale, colours.stage], [wide, colours.chosen]]) {
     ctx.lineWidth = width;
     ctx.strokeStyle = colour;
     ctx.stroke(pass.path);

@@ -2,6 +2,7 @@
 
 use super::escape;
 use crate::number::fixed;
+use crate::palette::{self, CURVES, hex};
 use glam::DVec2;
 
 /// One curve.
@@ -26,6 +27,8 @@ pub struct Plot {
     pub curves: Vec<Curve>,
     /// Vertical lines: the value of x and a label.
     pub marks: Vec<(f64, String)>,
+    /// Values of y that the curves should not exceed, and a label each.
+    pub limits: Vec<(f64, String)>,
     /// Shaded ranges of y: from, to and a label.
     pub bands: Vec<(f64, f64, String)>,
     /// Single points, in the colours of the curves with the same numbers.
@@ -41,8 +44,6 @@ const TOP: f64 = 44.0;
 const BOTTOM: f64 = 56.0;
 /// Height of a row of the legend.
 const ROW: f64 = 18.0;
-/// Distinguishable even without red, green or blue cones (`tests/it/page_colours.rs`; most are Okabe and Ito's, 2008).
-const COLOURS: [&str; 6] = ["#004b87", "#d55e00", "#009e73", "#d88fc0", "#8a1c4a", "#000000"];
 /// How lines are dashed: when the colours repeat, the dashes differ.
 const DASHES: [&str; 3] = ["none", "9 4", "2 4"];
 
@@ -53,8 +54,9 @@ impl Plot {
         let Some(first) = all().next() else { return String::new() };
         let marks = self.marks.iter().map(|(x, _)| DVec2::new(*x, first.y));
         let bands = self.bands.iter().flat_map(|(low, high, _)| [*low, *high]).map(|y| DVec2::new(first.x, y));
+        let limits = self.limits.iter().map(|(y, _)| DVec2::new(first.x, *y));
         let dots = self.dots.iter().flatten().copied();
-        let Some(bounds) = planar::Bounds::of(all().chain(marks).chain(bands).chain(dots)) else {
+        let Some(bounds) = planar::Bounds::of(all().chain(marks).chain(bands).chain(limits).chain(dots)) else {
             return String::new();
         };
         let low = if self.floating { bounds.min.y } else { bounds.min.y.min(0.0) };
@@ -75,7 +77,13 @@ impl Plot {
         for (low, high, word) in &self.bands {
             let (a, b) = (place(DVec2::new(x.low, *high)), place(DVec2::new(x.high, *low)));
             band(&mut svg, a, b);
-            text(&mut svg, DVec2::new(b.x - 6.0, b.y - 6.0), "end", word, "fill=\"#15803d\"");
+            text(
+                &mut svg,
+                DVec2::new(b.x - 6.0, b.y - 6.0),
+                "end",
+                word,
+                &format!("fill=\"{}\"", hex(palette::good(false))),
+            );
         }
         for at in x.ticks() {
             let (a, b) = (place(DVec2::new(at, y.low)), place(DVec2::new(at, y.high)));
@@ -92,6 +100,12 @@ impl Plot {
             line(&mut svg, a, b, "#6b7280", 1.5);
             text(&mut svg, b + DVec2::new(5.0, 12.0), "start", word, "fill=\"#374151\"");
         }
+        let bad = hex(palette::bad(false));
+        for (at, word) in &self.limits {
+            let (a, b) = (place(DVec2::new(x.low, *at)), place(DVec2::new(x.high, *at)));
+            line(&mut svg, a, b, &format!("{bad}\" stroke-dasharray=\"6 4"), 1.5);
+            text(&mut svg, b + DVec2::new(-6.0, -6.0), "end", word, &format!("fill=\"{bad}\""));
+        }
         for (i, curve) in self.curves.iter().enumerate() {
             let points: Vec<String> = curve.points.iter().map(|p| numbers(place(*p))).collect();
             svg += &format!(
@@ -100,8 +114,8 @@ impl Plot {
                 points.join(" ")
             );
         }
-        for (points, colour) in self.dots.iter().zip(COLOURS.iter().cycle()) {
-            points.iter().for_each(|p| dot(&mut svg, place(*p), colour));
+        for (points, colour) in self.dots.iter().zip(CURVES.iter().cycle()) {
+            points.iter().for_each(|p| dot(&mut svg, place(*p), &hex(*colour)));
         }
         let middle = LEFT + (SIZE.x - LEFT - RIGHT) / 2.0;
         text(&mut svg, DVec2::new(middle, SIZE.y - 14.0), "middle", &self.x, "");
@@ -141,15 +155,16 @@ impl Plot {
             format!("{} {low:.2} to {high:.2}", curve.name)
         };
         let drawn = self.curves.iter().filter(|curve| !curve.points.is_empty());
-        let ranges: Vec<String> = drawn.map(range).collect();
+        let limits = self.limits.iter().map(|(_, word)| word.clone());
+        let ranges: Vec<String> = drawn.map(range).chain(limits).collect();
         format!("{}: {} over {}; {}", self.title, self.y, self.x, ranges.join(", "))
     }
 }
 
 /// Colour and dashes of a curve, by its number.
 fn stroke(number: usize) -> String {
-    let colour = COLOURS[number % COLOURS.len()];
-    format!("stroke=\"{colour}\" stroke-dasharray=\"{}\"", DASHES[number / COLOURS.len() % DASHES.len()])
+    let colour = hex(CURVES[number % CURVES.len()]);
+    format!("stroke=\"{colour}\" stroke-dasharray=\"{}\"", DASHES[number / CURVES.len() % DASHES.len()])
 }
 
 struct Axis {
@@ -197,11 +212,12 @@ fn line(svg: &mut String, a: DVec2, b: DVec2, colour: &str, width: f64) {
 
 fn band(svg: &mut String, a: DVec2, b: DVec2) {
     *svg += &format!(
-        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#dcfce7\"/>\n",
+        "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\" fill-opacity=\"0.15\"/>\n",
         fixed(a.x, 1),
         fixed(a.y, 1),
         fixed(b.x - a.x, 1),
-        fixed(b.y - a.y, 1)
+        fixed(b.y - a.y, 1),
+        hex(palette::good(false))
     );
 }
 

@@ -1,7 +1,7 @@
 //! A page of pictures and tables: `compare.html`, `simulate.html` and the pages of `reproduce`.
 
 use super::bent::Bent;
-use super::{encode, escape, words};
+use super::{colours, encode, escape, words};
 use crate::deposit::Picture;
 use crate::template;
 
@@ -124,9 +124,9 @@ impl Sheet {
         let values = [
             ("title", escape(&self.title)),
             ("lead", escape(&self.lead)),
-            ("css", include_str!("sheet.css").to_owned()),
+            ("css", colours::css() + include_str!("sheet.css")),
             ("body", self.body.clone()),
-            ("js", self.scripts()),
+            ("js", colours::js() + &self.scripts()),
         ];
         template::expand(include_str!("sheet.html"), &values)
     }

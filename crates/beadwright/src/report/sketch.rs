@@ -2,6 +2,7 @@
 
 use super::escape;
 use crate::number::fixed;
+use crate::palette::{Rgb, hex};
 use glam::DVec2;
 use planar::{Bounds, Region};
 
@@ -20,15 +21,16 @@ impl Sketch {
     }
 
     /// A filled region.
-    pub fn region(&mut self, region: &Region, colour: &str) -> &mut Self {
+    pub fn region(&mut self, region: &Region, colour: Rgb) -> &mut Self {
+        let colour = hex(colour);
         let rings: String = region.rings().map(|ring| path(ring.points(), true)).collect();
         self.body += &format!("<path fill=\"{colour}\" fill-rule=\"evenodd\" d=\"{rings}\"/>\n");
         self
     }
 
     /// A line of this `width`, mm.
-    pub fn line(&mut self, points: &[DVec2], closed: bool, colour: &str, width: f64) -> &mut Self {
-        let (line, width) = (path(points, closed), fixed(width, 3));
+    pub fn line(&mut self, points: &[DVec2], closed: bool, colour: Rgb, width: f64) -> &mut Self {
+        let (line, colour, width) = (path(points, closed), hex(colour), fixed(width, 3));
         self.body += &format!("<path fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" d=\"{line}\"/>\n");
         self
     }

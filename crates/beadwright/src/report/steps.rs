@@ -4,15 +4,18 @@ use super::sketch::Sketch;
 use crate::fill::FillSettings;
 use crate::fill::hybrid::Steps;
 use crate::fill::one_loop::{self, line::Line};
+use crate::palette::{Rgb, SLICE, STEP, kind};
+use crate::pass::PassKind;
 use glam::DVec2;
 use planar::{Bounds, Polygon, Region};
 
-const CONTOUR: &str = "#1f6fd6";
-const CUT: &str = "#e8862a";
-const KEPT: &str = "#7e57c2";
-const DROPPED: &str = "#c4c9d1";
-const BEAD: &str = "#b9d2f3";
-const SLICE: &str = "#eef0f3";
+const CONTOUR: Rgb = kind(PassKind::Contour);
+/// Pockets that are filled along their middle, and all else that is.
+const KEPT: Rgb = kind(PassKind::Skeleton);
+/// Pockets that are left to the contours.
+const DROPPED: Rgb = [196, 201, 209];
+/// Beads below the lines in their middle.
+const BEAD: Rgb = [185, 210, 243];
 
 /// Sketches with nothing but the slice, and the width of a thin line in them, mm.
 fn begun(islands: &[Polygon], titles: [&'static str; 4]) -> ([Sketch; 4], f64) {
@@ -25,7 +28,7 @@ fn begun(islands: &[Polygon], titles: [&'static str; 4]) -> ([Sketch; 4], f64) {
     (sketches, 0.004 * bounds.size().max_element())
 }
 
-/// Contours with their pockets (violet: those that are kept), skeleton regions, the contours left (orange: those that
+/// Contours with their pockets (green: those that are kept), skeleton regions, the contours left (pink: those that
 /// were cut), and the passes.
 pub(crate) fn sketches(islands: &[Polygon], settings: &FillSettings) -> [Sketch; 4] {
     let titles = ["1. Contours and their pockets", "2. Skeleton regions", "3. Contours, cut", "4. Passes"];
@@ -52,7 +55,7 @@ fn draw(steps: &Steps, sketches: &mut [Sketch; 4], thin: f64) {
         cut.line(ring.points(), true, CONTOUR, thin);
     }
     for piece in &steps.contours.incomplete {
-        cut.line(&piece.points, false, CUT, thin);
+        cut.line(&piece.points, false, STEP, thin);
     }
     for (list, colour) in [(&steps.skeleton, KEPT), (&steps.chains, CONTOUR)] {
         for pass in list {
@@ -89,7 +92,7 @@ fn draw_loop(steps: &one_loop::Steps, middle: DVec2, sketches: &mut [Sketch; 4],
     };
     all(joined, &steps.joined);
     for flip in &steps.flips {
-        joined.line(&placed(&[*flip - DVec2::X * thin, *flip + DVec2::X * thin]), false, CUT, 4.0 * thin);
+        joined.line(&placed(&[*flip - DVec2::X * thin, *flip + DVec2::X * thin]), false, STEP, 4.0 * thin);
     }
     all(relaxed, &steps.relaxed);
     for (a, b, width) in steps.lines.iter().flat_map(Line::pieces) {

@@ -3,24 +3,13 @@
 use super::{escape, travels};
 use crate::layer::Layer;
 use crate::number::push_fixed;
+use crate::palette::{self, hex};
 use crate::pass::{Along, PassKind};
 use glam::DVec2;
 use planar::{Bounds, Polygon, Ring};
 
-/// Colour of contour passes.
-const CONTOUR: &str = "#1f6fd6";
-/// Colour of infill passes.
-const INFILL: &str = "#e8862a";
-/// Colour of passes that fill pockets.
-const SKELETON: &str = "#7e57c2";
-/// Colour of walls.
-const WALL: &str = "#0f8b8d";
 /// Colour of moves without arc.
 const TRAVEL: &str = "#6b7280";
-/// Colour of arc starts.
-const START: &str = "#1a9c4b";
-/// Colour of arc ends.
-const END: &str = "#d92d3a";
 
 /// Text and lines scale with the picture: its larger side is this many units long.
 const UNITS: f64 = 100.0;
@@ -85,15 +74,11 @@ impl Frame {
     fn legend(&self, svg: &mut String, walls: bool) {
         let (unit, y) = (self.unit, self.low.y + self.size.y - 4.0 * self.unit);
         let mut at = DVec2::new(self.low.x + 4.0 * unit, y);
-        let kinds = [
-            ("contour", CONTOUR, 11.0),
-            ("infill", INFILL, 8.6),
-            ("skeleton", SKELETON, 12.0),
-            ("wall", WALL, 6.4),
-            ("travel", TRAVEL, 8.8),
-        ];
+        let widths = [11.0, 8.6, 12.0, 6.4];
+        let kinds = palette::KINDS.iter().zip(widths).map(|(kind, width)| (kind.name(), colour(*kind), width));
+        let kinds = kinds.chain([("travel", TRAVEL.to_owned(), 8.8)]);
         let shown = |name: &str| name == "travel" || (name == "wall") == walls;
-        for (name, colour, width) in kinds.into_iter().filter(|(name, ..)| shown(name)) {
+        for (name, colour, width) in kinds.filter(|(name, ..)| shown(name)) {
             let (thick, dash) = if name == "travel" { (0.35, "1.4 0.9") } else { (1.8, "none") };
             line(svg, at - DVec2::Y * 0.8 * unit, at + DVec2::new(3.0, -0.8) * unit, thick * unit);
             let dash = if dash == "none" { String::new() } else { dashes(unit) };
@@ -101,8 +86,8 @@ impl Frame {
             text(svg, at + DVec2::X * 4.6 * unit, 2.2 * unit, &format!(">{name}"));
             at.x += (width + 4.6) * unit;
         }
-        for (name, colour) in [("arc start", START), ("arc end", END)] {
-            dot(svg, at + DVec2::new(0.8, -0.8) * unit, 0.9 * unit, colour);
+        for (name, colour) in [("arc start", palette::START), ("arc end", palette::END)] {
+            dot(svg, at + DVec2::new(0.8, -0.8) * unit, 0.9 * unit, &hex(colour));
             text(svg, at + DVec2::X * 2.4 * unit, 2.2 * unit, &format!(">{name}"));
             at.x += 12.6 * unit;
         }
@@ -162,13 +147,12 @@ fn beads(svg: &mut String, layer: &Layer, unit: f64) {
 /// Opacity of beads, so that what lies below them shows through.
 const WIDE: &str = " stroke-opacity=\"0.45\"";
 
+fn colour(kind: PassKind) -> String {
+    hex(palette::kind(kind))
+}
+
 fn stroke(svg: &mut String, kind: PassKind, points: impl Iterator<Item = DVec2>, closed: bool, width: f64, more: &str) {
-    let colour = match kind {
-        PassKind::Contour => CONTOUR,
-        PassKind::Infill => INFILL,
-        PassKind::Skeleton => SKELETON,
-        PassKind::Wall | PassKind::Spot => WALL,
-    };
+    let colour = colour(kind);
     svg.push_str(&format!("<path fill=\"none\" stroke=\"{colour}\"{more} stroke-width=\""));
     push_fixed(svg, width, 3);
     svg.push_str("\" d=\"");
@@ -182,11 +166,12 @@ fn marks(svg: &mut String, layer: &Layer, unit: f64) {
         line(svg, flip(from), flip(to), 0.25 * unit);
         svg.push_str(&format!(" stroke=\"{TRAVEL}\"{}/>\n", dashes(unit)));
     }
+    let [start, end] = [palette::START, palette::END].map(hex);
     // On closed passes the two coincide: the start is drawn over the end.
     for pass in &layer.passes {
         let at = |p: Option<glam::DVec3>| p.map(|p| flip(p.truncate()));
-        at(pass.end()).into_iter().for_each(|p| dot(svg, p, 0.75 * unit, END));
-        at(pass.start()).into_iter().for_each(|p| dot(svg, p, 0.5 * unit, START));
+        at(pass.end()).into_iter().for_each(|p| dot(svg, p, 0.75 * unit, &end));
+        at(pass.start()).into_iter().for_each(|p| dot(svg, p, 0.5 * unit, &start));
     }
 }
 

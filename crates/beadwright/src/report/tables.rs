@@ -94,8 +94,14 @@ pub(super) fn refused(summary: &Summary) -> String {
     if items.is_empty() { items } else { format!("<ul class=\"warnings refused\">{items}</ul>") }
 }
 
-/// The totals of the plan.
-pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figures: Option<&Figures>) -> String {
+/// The totals of the plan; what the deposit model says with the void, overfill and metal outside of the worst layers, %, and a
+/// mark that says whether all layers keep the limits.
+pub(super) fn totals(
+    header: &Header,
+    summary: &Summary,
+    profile: &Profile,
+    figures: Option<(&Figures, [f64; 3])>,
+) -> String {
     let m: &Metrics = &summary.metrics;
     let [starts, time, wire] =
         if profile.prints() { ["Starts", "Time extruding", "Filament"] } else { ["Arc starts", "Arc time", "Wire"] };
@@ -114,12 +120,28 @@ pub(super) fn totals(header: &Header, summary: &Summary, profile: &Profile, figu
     rows.extend(m.milled_part_volume_mm3.map(|part| ("Milled from it", volume(part))));
     rows.push(("Deposited volume", volume(m.deposited_volume_mm3)));
     rows.push(("Covered / slice area", format!("{:.2} %", 100.0 * m.coverage())));
-    if let Some(f) = figures {
-        rows.push(("Void, low", format!("{:.2} %, {:.2} % of the area", f.void_percent(), f.low_percent())));
-        rows.push(("Overfill, outside", format!("{:.2} %, {:.2} %", f.overfill_percent(), f.outside_percent())));
-        rows.push(("Height", format!("{:.2} mm ± {:.2} mm per layer", f.mean(), f.deviation())));
+    let mut lines: Vec<String> = rows.iter().map(row).collect();
+    if let Some((f, [void, overfill, outside])) = figures {
+        let limits = &profile.check;
+        let judged = [
+            ("Void", f.void_percent(), Some((void, limits.max_void))),
+            ("Low", f.low_percent(), None),
+            ("Overfill", f.overfill_percent(), Some((overfill, limits.max_overfill))),
+            ("Outside", f.outside_percent(), Some((outside, limits.max_outside))),
+        ];
+        lines.extend(judged.map(|(name, percent, worst)| {
+            let mark = worst.map(|(worst, limit)| marked(worst, limit)).unwrap_or_default();
+            headed(name, &format!("{mark}{percent:.2} %"))
+        }));
+        lines.push(row(&("Height", format!("{:.2} mm ± {:.2} mm per layer", f.mean(), f.deviation()))));
     }
-    table(&rows)
+    tabled(&lines)
+}
+
+/// Whether all layers keep a limit, %, as a mark and in words.
+fn marked(worst: f64, limit: f64) -> String {
+    let (class, mark) = if worst <= limit { ("kept", "✔") } else { ("broken", "✖") };
+    format!("<small class=\"{class}\">{mark} worst layer {worst:.2} %, limit {limit} %</small> ")
 }
 
 /// The values of the profile that a welder sets or checks.
@@ -300,11 +322,21 @@ fn link(Seen { layer, pass, place }: Seen) -> String {
 }
 
 fn table(rows: &[(&str, String)]) -> String {
-    let name = |name: &str| name.split(", ").map(hinted).collect::<Vec<_>>().join(", ");
-    let row = |(key, value): &(&str, String)| {
-        format!("<tr><th scope=\"row\">{}</th><td>{}</td></tr>", name(key), escape(value))
-    };
-    format!("<table>\n{}\n</table>", rows.iter().map(row).collect::<Vec<_>>().join("\n"))
+    tabled(&rows.iter().map(row).collect::<Vec<_>>())
+}
+
+fn tabled(rows: &[String]) -> String {
+    format!("<table>\n{}\n</table>", rows.join("\n"))
+}
+
+fn row((name, value): &(&str, String)) -> String {
+    headed(name, &escape(value))
+}
+
+/// A row of a name and of what is markup already.
+fn headed(name: &str, value: &str) -> String {
+    let name: Vec<String> = name.split(", ").map(hinted).collect();
+    format!("<tr><th scope=\"row\">{}</th><td>{value}</td></tr>", name.join(", "))
 }
 
 fn count(n: usize, one: &str, many: &str) -> String {

@@ -6,6 +6,7 @@ use super::sheet::{Row, Sheet};
 use crate::heat::{History, Interpass, LayerHeat};
 use crate::layer::Layer;
 use crate::number::push_fixed;
+use crate::palette;
 use crate::pass::Pass;
 use glam::{DVec2, DVec3};
 use planar::{Bounds, Polygon};
@@ -54,20 +55,15 @@ fn over_time(history: &History, limits: Option<&Interpass>) -> Plot {
         history.layers.iter().flat_map(|layer| &layer.passes).map(|pass| DVec2::new(pass.at / 60.0, pass.start));
     let first = |layer: &LayerHeat| layer.passes.first().map(|pass| pass.at / 60.0);
     let below = history.layers.iter().filter_map(|layer| Some(DVec2::new(first(layer)?, layer.below)));
-    let limit = limits.map(|limits| Curve {
-        name: "limit".to_owned(),
-        points: vec![
-            DVec2::new(0.0, limits.max_temperature),
-            DVec2::new(history.seconds / 60.0, limits.max_temperature),
-        ],
-    });
+    let limit = |limits: &Interpass| (limits.max_temperature, format!("limit {:.0} °C", limits.max_temperature));
     let curve = |name: &str, points: Vec<DVec2>| Curve { name: name.to_owned(), points };
     let curves = [curve("where passes begin", starts.collect()), curve("mean of the layer below", below.collect())];
     Plot {
         title: "Temperature before each pass".to_owned(),
         x: "time, min".to_owned(),
         y: "temperature, °C".to_owned(),
-        curves: curves.into_iter().chain(limit).collect(),
+        curves: curves.to_vec(),
+        limits: limits.map(limit).into_iter().collect(),
         ..Plot::default()
     }
 }
@@ -104,14 +100,8 @@ impl Scale {
         Self { low, high: high.max(low + 1.0) }
     }
 
-    /// Dark violet to yellow, of rising lightness, so that it reads in grey too (after matplotlib's "inferno").
     fn colour(&self, temperature: f64) -> String {
-        const STOPS: [[f64; 3]; 5] =
-            [[40.0, 11.0, 84.0], [120.0, 28.0, 109.0], [188.0, 55.0, 84.0], [237.0, 105.0, 37.0], [251.0, 180.0, 26.0]];
-        let at = ((temperature - self.low) / (self.high - self.low)).clamp(0.0, 1.0) * 3.999;
-        let (i, part) = (at as usize, at.fract());
-        let [r, g, b] = [0, 1, 2].map(|c| STOPS[i][c] + (STOPS[i + 1][c] - STOPS[i][c]) * part);
-        format!("#{:02x}{:02x}{:02x}", r as u8, g as u8, b as u8)
+        palette::hex(palette::warmth((temperature - self.low) / (self.high - self.low)))
     }
 
     /// The legend.

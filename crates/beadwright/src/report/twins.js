@@ -1,7 +1,7 @@
 // Beads of any two strategies in 3-D, side by side: one camera, one slider.
 
 // By their numbers (encode.rs).
-const TWIN_KINDS = [["contour", [52, 100, 230]], ["infill", [252, 168, 48]], ["skeleton", [14, 194, 140]], ["wall", [170, 133, 204]]];
+const TWIN_KINDS = INKS.kinds;
 
 // The layers of a column with where they begin, and the box around all of them.
 function readColumn({ name, layers }) {

@@ -117,6 +117,7 @@ fn the_comparison_can_be_read_without_sight() {
             part,
             "One & other",
             &[StrategyName::Loop, StrategyName::Hybrid, StrategyName::Raster].map(entry),
+            Some(&profile.check),
         );
         for strategy in [StrategyName::Loop, StrategyName::Hybrid] {
             compare::add_steps(&mut page, &mesh, &profile, strategy, 2, &Task::new()).unwrap();

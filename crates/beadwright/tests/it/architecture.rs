@@ -90,8 +90,8 @@ const CRATES: &[(&str, &[&[&str]])] = &[
     (
         "beadwright",
         &[
-            // Holds the settings of all stages of the crates below, which can be used without it.
-            &["profile"],
+            // The profile holds the settings of all stages of the crates below, which can be used without it.
+            &["palette", "profile"],
             &["metrics"],
             &["plan"],
             &["plan_file", "check", "directions"],

@@ -65,7 +65,7 @@ mod one_loop;
 mod order;
 mod outline;
 mod own_dialect;
-mod page_colours;
+mod palette;
 mod part;
 mod parts;
 mod plan;

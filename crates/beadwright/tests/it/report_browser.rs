@@ -4,7 +4,9 @@
 
 use crate::common;
 
+use beadwright::check;
 use beadwright::compare;
+use beadwright::deposit::Judge;
 use beadwright::example;
 use beadwright::fill::StrategyName;
 use beadwright::finding::{Finding, Severity};
@@ -99,7 +101,7 @@ fn layers_and_views_are_shared_by_both_pictures() {
         while (shown.index !== 4) await rest(5);
         const ramps = ['order', 'width', 'speed', 'time', 'kind'].map(by => {
           document.querySelector(`[name=colour][value=${by}]`).click();
-          return [shown.by, $('key-ramp').hidden, $('ramp-low').textContent];
+          return [shown.by, $('key-ramp').hidden, $('range-low').value, $('ramp-high').textContent];
         });
         pointOutNext(1);
         await rest(50);
@@ -109,7 +111,7 @@ fn layers_and_views_are_shared_by_both_pictures() {
     assert!(answer["now"].as_str().unwrap().starts_with(&format!("5 of {}", plan.layers.len())));
     let pieces = || plan.layers.iter().flat_map(|layer| &layer.passes).flat_map(|pass| pass.segments());
     let least = pieces().map(|piece| piece.width).fold(f64::MAX, f64::min);
-    assert_eq!(answer["ramps"][1], serde_json::json!(["width", false, format!("{least:.2} mm")]));
+    assert_eq!(answer["ramps"][1], serde_json::json!(["width", false, format!("{least:.2}"), "mm"]));
     assert_eq!(answer["ramps"][4][1], true);
     let tip = answer["tip"].as_str().unwrap();
     let first = plan.layers[4].passes[0].segments().next().unwrap();
@@ -224,6 +226,85 @@ fn a_finding_shows_its_layer_its_place_and_its_pass() {
     assert!(answer[1]["mark"].is_null());
 }
 
+#[test]
+fn the_range_of_the_colours_is_chosen_and_given_back() {
+    let profile = common::profile("cmt-al2319-kuka");
+    let plan = common::planned("cross", &profile);
+    let script = "
+        document.querySelector('[name=colour][value=speed]').click();
+        await rest(50);
+        const seen = () => ['range-low', 'range-high'].map(id => $(id).value);
+        const bead = () => { draw(); const { xy } = shown.layer.passes[0]; return [...picture.getContext('2d').getImageData(
+          Math.round((view.x + view.scale * xy[0]) * picture.width / view.width) + 4, Math.round((view.y - view.scale * xy[1]) * picture.height / view.height), 1, 1).data]; };
+        shown.ends = shown.travels = shown.outline = false;
+        const type = (id, text) => { $(id).value = text; $(id).dispatchEvent(new Event('change')); };
+        const before = seen(), paint = bead(), hidden = $('range-reset').hidden;
+        type('range-high', '60');
+        const wide = seen(), painted = bead(), range = lookNow({}).range;
+        // Ends cannot change places, and a field cannot be empty.
+        type('range-low', '90');
+        const crossed = seen();
+        type('range-low', '');
+        const empty = seen();
+        document.querySelector('[name=colour][value=width]').click();
+        const other = CHOICES.width.whole;
+        document.querySelector('[name=colour][value=speed]').click();
+        const kept = seen();
+        $('range-reset').click();
+        return { before, paint, hidden, wide, painted, range, crossed, empty, other: other ?? null, kept, after: seen(), left: CHOICES.speed.whole ?? null };";
+    let Some(answer) = ask(&page(&plan, &profile), script) else { return };
+    let low = answer["before"][0].clone();
+    assert!(answer["hidden"] == true && answer["before"] != answer["wide"], "{answer}");
+    assert_eq!(answer["wide"], serde_json::json!([low, "60.0"]), "{answer}");
+    assert_eq!(answer["range"][1], 60.0, "{answer}");
+    assert_ne!(answer["paint"], answer["painted"], "the picture keeps its colours: {answer}");
+    for same in ["crossed", "empty", "kept"] {
+        assert_eq!(answer[same], answer["wide"], "{same}: {answer}");
+    }
+    assert!(answer["other"].is_null() && answer["left"].is_null() && answer["after"] == answer["before"], "{answer}");
+}
+
+/// A report with what the deposit model says about each layer.
+fn judged(plan: &Plan, profile: &Profile) -> String {
+    let mut report = Report::new(&plan.header, profile);
+    let judge = Judge::new(plan::deposit_settings(profile));
+    let take = |i: usize, judgement| report.layer(&plan.layers[i], Some(&judgement));
+    check::judge_layers(&plan.layers, profile, judge, &Task::new(), take).unwrap();
+    report.finish(&plan.summary, &RepairReport::default(), &[], &[])
+}
+
+#[test]
+fn totals_and_bars_say_whether_limits_are_kept() {
+    let mut profile = common::profile("cmt-al2319-kuka");
+    let plan = common::planned("cross", &profile);
+    let script = "
+        const seen = measure => { $('measure').value = measure; $('measure').onchange();
+          const { data: pixels } = bars.getContext('2d').getImageData(0, 0, bars.width, bars.height), bad = channels(colours.bad);
+          let red = 0;
+          for (let i = 0; i < pixels.length; i += 4) if (bad.every((v, k) => Math.abs(pixels[i + k] - v) < 12) && pixels[i + 3] > 40) red++;
+          return [bars.getAttribute('aria-label'), $('bars-now').textContent, red];
+        };
+        const marks = [...document.querySelectorAll('.kept, .broken')].map(mark => `${mark.className} ${mark.textContent}`);
+        return { marks, voids: seen('voids'), overfill: seen('overfill'), length: seen('length') };";
+    let Some(kept) = ask(&judged(&plan, &profile), script) else { return };
+    let marks = kept["marks"].as_array().unwrap();
+    assert_eq!(marks.len(), 3, "{kept}");
+    assert!(marks.iter().all(|mark| mark.as_str().unwrap().starts_with("kept ✔ worst layer")), "{kept}");
+    let count = plan.layers.len();
+    assert!(kept["voids"][0].as_str().unwrap().ends_with(&format!("0 of {count} above the limit of 3.00 %")), "{kept}");
+    assert!(kept["voids"][1].as_str().unwrap().ends_with(" · limit 3.00 %"), "{kept}");
+    assert!(kept["voids"][2].as_u64() > Some(100), "no line: {kept}");
+    assert_eq!(kept["length"][0], "Bead length of every layer as a bar");
+    assert_eq!(kept["length"][2], 0, "{kept}");
+    profile.check.max_overfill = 0.01;
+    let Some(broken) = ask(&judged(&plan, &profile), script) else { return };
+    assert!(broken["marks"][1].as_str().unwrap().starts_with("broken ✖ worst layer"), "{broken}");
+    assert!(
+        broken["overfill"][0].as_str().unwrap().ends_with(&format!("{count} of {count} above the limit of 0.01 %"))
+    );
+    assert!(broken["overfill"][2].as_u64() > kept["overfill"][2].as_u64(), "{broken}");
+}
+
 /// What a script gives of a page (`page`, its document) that is as wide as a phone.
 fn on_a_phone(html: &str, script: &str) -> Option<serde_json::Value> {
     let inner = html.replace('&', "&amp;").replace('"', "&quot;");
@@ -248,7 +329,7 @@ fn on_a_phone_charts_scale_and_the_first_column_stays() {
     let profile = common::profile("cmt-al2319-kuka");
     let (mesh, settings) = (example::find("cross").unwrap().mesh(), plan::deposit_settings(&profile));
     let entry = |name| compare::strategy(&mesh, &profile, name, settings, &None, &Task::new()).unwrap();
-    let html = compare::page("cross", "", &[StrategyName::Loop, StrategyName::Zigzag].map(entry)).html();
+    let html = compare::page("cross", "", &[StrategyName::Loop, StrategyName::Zigzag].map(entry), None).html();
     let script = "
         const card = page.querySelector('.card.wide'), cell = card.querySelector('td');
         const before = cell.getBoundingClientRect().left;
@@ -265,7 +346,17 @@ fn on_a_phone_charts_scale_and_the_first_column_stays() {
     assert!(answer["letters"].as_f64().unwrap() > 7.0 && answer["page"] == 0, "{answer}");
 
     let plan = common::planned("cross", &profile);
-    let script = "return { plots: page.querySelectorAll('.plots svg').length, wide: wide.length, page: page.documentElement.scrollWidth - width };";
-    let Some(answer) = on_a_phone(&page(&plan, &profile), script) else { return };
-    assert!(answer["wide"] == 0 && answer["page"] == 0, "{answer}");
+    let script = "
+        page.querySelector('[name=colour][value=time]').click();
+        const reset = page.getElementById('range-reset');
+        reset.hidden = false;
+        return {
+          plots: page.querySelectorAll('.plots svg').length, wide: wide.length, page: page.documentElement.scrollWidth - width,
+          beside: width - reset.getBoundingClientRect().right,
+        };";
+    for html in [page(&plan, &profile), judged(&plan, &profile)] {
+        let Some(answer) = on_a_phone(&html, script) else { return };
+        assert!(answer["wide"] == 0 && answer["page"] == 0, "{answer}");
+        assert!(answer["beside"].as_f64().unwrap() > 16.0, "the legend leaves its card: {answer}");
+    }
 }

@@ -11,6 +11,7 @@ use beadwright::motion::Motion;
 use beadwright::order::ant_colony::{self, Colony, Round};
 use beadwright::order::begin_at;
 use beadwright::order::tour::{self, Ends, Gate, Stop, Visit};
+use beadwright::palette;
 use beadwright::plan::{self, ToFill};
 use beadwright::profile::Profile;
 use beadwright::report::sketch::Sketch;
@@ -18,8 +19,6 @@ use glam::DVec2;
 use planar::scan::{End, Scan, Spacing};
 use planar::{Bounds, Polygon, Region, Ring};
 use std::f64::consts::FRAC_PI_2;
-
-const COLOURS: [&str; 6] = ["#1f6fd6", "#e8862a", "#1a9c4b", "#7e57c2", "#0e7490", "#c2417c"];
 
 /// The printer of the paper.
 #[derive(Debug, Clone)]
@@ -180,14 +179,14 @@ impl<'a> Turned<'a> {
     /// The first layer of a plan with its travels.
     pub(super) fn sketch(&self, plan: &Plan, title: &str) -> Sketch {
         let mut sketch = Sketch::new(self.slice.bounds().unwrap_or(Bounds::EMPTY), title);
-        sketch.region(&self.slice, "#eef0f3");
+        sketch.region(&self.slice, palette::SLICE);
         let [layer, _] = self.laid(plan);
         let paths: Vec<&Vec<DVec2>> = layer.paths().collect();
-        for (path, colour) in paths.iter().zip(COLOURS.iter().cycle()) {
-            sketch.line(path, false, colour, 0.4 * self.settings.stepover);
+        for (path, colour) in paths.iter().zip(palette::CURVES.iter().cycle()) {
+            sketch.line(path, false, *colour, 0.4 * self.settings.stepover);
         }
         for ends in travels(&paths) {
-            sketch.line(&ends, false, "#d92d3a", self.settings.stepover);
+            sketch.line(&ends, false, palette::END, self.settings.stepover);
         }
         sketch
     }

@@ -73,7 +73,7 @@ pub(super) struct Gpu {
     globals: [wgpu::Buffer; LOOKS],
     bindings: [wgpu::BindGroup; LOOKS],
     map: wgpu::Texture,
-    map_of: Option<(Colour, bool)>,
+    map_of: Option<Colour>,
     /// Coarse, then fine.
     fans: [(wgpu::Buffer, u32); 2],
     pipelines: Vec<Pipelines>,
@@ -94,7 +94,7 @@ impl Gpu {
         let (device, queue) = (state.device.clone(), state.queue.clone());
         let layout = layout(&device);
         let [map, scan_map] = std::array::from_fn(|_| colour_map(&device));
-        write_map(&queue, &scan_map, Colour::HeightError, true);
+        write_map(&queue, &scan_map, Colour::HeightError);
         let globals: [wgpu::Buffer; LOOKS] = std::array::from_fn(|_| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("globals"),
@@ -147,9 +147,9 @@ impl Gpu {
             self.surface_version = Some(scene.mesh_version());
             self.surface = scene.mesh().and_then(|mesh| Surface::new(&self.device, mesh));
         }
-        if self.map_of != Some((style.colour, style.dark)) {
-            self.map_of = Some((style.colour, style.dark));
-            write_map(&self.queue, &self.map, style.colour, style.dark);
+        if self.map_of != Some(style.colour) {
+            self.map_of = Some(style.colour);
+            write_map(&self.queue, &self.map, style.colour);
         }
         if self.scan_version != Some(scene.scan_version()) {
             self.scan_version = Some(scene.scan_version());
@@ -162,7 +162,7 @@ impl Gpu {
         self.sync(scene, style);
         let mut globals = Globals::new(scene, style, camera, target.pixels, quality);
         for (buffer, part) in self.globals.iter().zip(ACCENTS) {
-            let [r, g, b] = palette::ACCENT.map(|c| f32::from(c) / 255.0);
+            let [r, g, b] = palette::CHOSEN.map(|c| f32::from(c) / 255.0);
             globals.accent = [r, g, b, part];
             self.queue.write_buffer(buffer, 0, bytemuck::bytes_of(&globals));
         }
@@ -242,8 +242,8 @@ fn colour_map(device: &wgpu::Device) -> wgpu::Texture {
 }
 
 /// Sends the colours of a map.
-fn write_map(queue: &wgpu::Queue, map: &wgpu::Texture, colour: Colour, dark: bool) {
-    let texels: Vec<u8> = palette::map(colour, dark).iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
+fn write_map(queue: &wgpu::Queue, map: &wgpu::Texture, colour: Colour) {
+    let texels: Vec<u8> = palette::map(colour).iter().flat_map(|&[r, g, b]| [r, g, b, 255]).collect();
     let (offset, bytes_per_row, rows_per_image) = (0, Some(texels.len() as u32), None);
     let row = wgpu::TexelCopyBufferLayout { offset, bytes_per_row, rows_per_image };
     queue.write_texture(map.as_image_copy(), &texels, row, map.size());

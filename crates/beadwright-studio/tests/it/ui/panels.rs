@@ -1,6 +1,6 @@
 //! Panels: they keep their width, and everything in them is within reach, with large text too.
 
-use crate::window::{Window, click, example, press, search, studio_of_size, wait};
+use crate::window::{Window, click, example, press, search, sees, studio_of_size, wait};
 use beadwright_studio::settings::Store;
 use beadwright_studio::view::Side;
 use eframe::egui::{Key, Rect, Role, pos2};
@@ -84,5 +84,39 @@ fn text_at_150_percent_keeps_every_control_within_reach() {
         harness.state_mut().view().side = side;
         harness.run_steps(4);
         all_within_reach(&mut harness, window, &format!("{side:?}"));
+    }
+}
+
+#[test]
+fn a_better_place_for_the_part_is_suggested_and_forgotten_with_the_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    click(&mut harness, "Plots");
+    let press = |harness: &mut Window, label: &str| {
+        harness.get_by_label(label).scroll_to_me();
+        harness.run_steps(5);
+        click(harness, label);
+        wait(harness);
+    };
+    press(&mut harness, "Check reach");
+    let told = |harness: &Window| harness.query_by_label_contains("The part's origin at").is_some();
+    assert!(!told(&harness));
+    press(&mut harness, "Find a better place");
+    assert!(told(&harness));
+    harness.state_mut().set_value("process.deposition_speed", "10");
+    wait(&mut harness);
+    assert!(!told(&harness));
+}
+
+#[test]
+fn help_has_first_steps_and_says_what_this_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = example(folder.path(), "cross");
+    for (entry, text) in [("First steps", "run it without arc"), ("About Beadwright", env!("CARGO_PKG_VERSION"))] {
+        assert!(harness.query_by_label_contains(text).is_none(), "{text}");
+        click(&mut harness, "Help");
+        assert!(sees(&harness, "The book"));
+        click(&mut harness, entry);
+        assert!(harness.query_by_label_contains(text).is_some(), "{text}");
     }
 }

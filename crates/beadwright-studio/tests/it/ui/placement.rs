@@ -1,7 +1,10 @@
 //! Where the part is placed.
 
 use crate::window::{Window, bounds, click, click_at, crosses, has_adapter, planned, sees, studio, type_number, wait};
-use eframe::egui::Key;
+use beadwright::model::Part;
+use beadwright::preform::orient::Oriented;
+use beadwright::task::Task;
+use eframe::egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 
@@ -45,6 +48,42 @@ fn a_part_is_laid_flat_scaled_and_turned() {
     click(&mut harness, "Reset");
     wait(&mut harness);
     assert!(near(size(&harness), DVec3::new(100.0, 20.0, 100.0)), "{}", size(&harness));
+    // Standing on an arm, the other two overhang.
+    click(&mut harness, "Least overhang");
+    wait(&mut harness);
+    assert!(near(size(&harness), DVec3::new(100.0, 100.0, 20.0)), "{}", size(&harness));
+    // One step back undoes it.
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    wait(&mut harness);
+    assert!(near(size(&harness), DVec3::new(100.0, 20.0, 100.0)), "{}", size(&harness));
+}
+
+#[test]
+fn a_preform_is_turned_the_way_up_in_which_it_costs_least() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("leaning.stl");
+    // It leans by 40°.
+    std::fs::write(&path, crosses(&[|p| DVec3::new(p.x, 0.766 * p.y - 0.643 * p.z, 0.643 * p.y + 0.766 * p.z)]))
+        .unwrap();
+    let mut harness = studio(&folder.path().join("store"));
+    harness.state_mut().view().mode = beadwright_studio::view::Mode::Layer;
+    harness.state_mut().open(&path);
+    wait(&mut harness);
+    click(&mut harness, "Placement");
+    click(&mut harness, "Preform");
+    wait(&mut harness);
+    let score = |harness: &Window| {
+        let (plan, task) = (harness.state().plan(), Task::new());
+        let (Some(Part::Mesh(import)), Some(profile)) = (plan.part.as_deref(), &plan.profile) else { unreachable!() };
+        let (settings, rates) = (profile.preform_settings(), profile.preform_rates());
+        let mesh = &import.milled.as_ref().unwrap().mesh;
+        Oriented::of(mesh, DVec3::NEG_Z, &settings, &rates, &task).unwrap().figures.score()
+    };
+    let before = score(&harness);
+    click(&mut harness, "Cheapest preform");
+    wait(&mut harness);
+    let after = score(&harness);
+    assert!(after < 0.9 * before, "{after}, before {before}");
 }
 
 #[test]

@@ -90,7 +90,7 @@ fn a_scan_has_the_colours_of_its_deviation() {
         let [r, g, b, _] = picture.get_pixel(place.x as u32 + 60, place.y as u32 + 10).0;
         DVec3::new(r.into(), g.into(), b.into())
     };
-    let (above, below) = (palette::at(Colour::HeightError, 1.0, true), palette::at(Colour::HeightError, 0.0, true));
+    let (above, below) = (palette::at(Colour::HeightError, 1.0), palette::at(Colour::HeightError, 0.0));
     for (path, wanted) in [
         (surface(folder.path(), 20.5), above),
         (surface(folder.path(), 19.5), below),

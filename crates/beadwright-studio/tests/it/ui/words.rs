@@ -38,6 +38,13 @@ fn the_window_speaks_chinese() {
     wait(&mut harness);
     assert!(sees(&harness, "完成") && sees(&harness, "沉积长度"));
     there(&harness, &["参数", "总计", "填充策略", "焊道宽度"]);
+    // Findings too: what they are, why they matter, what to do.
+    harness.state_mut().set_value("check.max_void", "0.01");
+    wait(&mut harness);
+    harness.state_mut().view().side = Side::Findings;
+    harness.run_steps(3);
+    there(&harness, &["空洞 (", "空洞会成为零件中的气孔和未熔合", "选用空洞更少的策略", "层：面积的", "限值为 0.01 %"]);
+    assert!(harness.query_by_label_contains("stays empty").is_none());
     // And back again.
     click(&mut harness, "视图");
     // The dialect of the program is a language too.
