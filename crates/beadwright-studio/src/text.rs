@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-/// A language of the window. Messages of the library are English; [`crate::told`] says findings in Chinese, errors and notes stay.
+/// A language of the window. Messages of the library are English; [`crate::chinese`] says findings in Chinese, errors and notes stay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Language {
     /// English.

@@ -1,9 +1,9 @@
 //! What the checks found; a click shows the place.
 
 use super::{trial, words};
+use crate::chinese::{self, Chinese};
 use crate::known::{Known, Queue, View};
 use crate::text::Language;
-use crate::told::{self, Told};
 use crate::view::{Mode, Pin};
 use beadwright::Finding;
 use beadwright::check::{self, Check};
@@ -42,8 +42,8 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
                 let title = format!("{} ({count}{})", name(known, finding.kind), known.t(word(finding.severity)));
                 ui.colored_label(colour, title);
                 one(known, view, ui, finding);
-                if let Some(told) = in_chinese(known, finding.kind) {
-                    ui.weak(format!("{}：{}。", known.t("remedy"), told.remedy));
+                if let Some(chinese) = in_chinese(known, finding.kind) {
+                    ui.weak(format!("{}：{}。", known.t("remedy"), chinese.remedy));
                 }
             }
         }
@@ -56,25 +56,25 @@ fn word(severity: Severity) -> &'static str {
 }
 
 /// A kind of findings in Chinese, where that is the language of the window.
-fn in_chinese(known: Known<'_>, kind: &str) -> Option<&'static Told> {
-    told::told(kind).filter(|_| known.language() == Language::Chinese)
+fn in_chinese(known: Known<'_>, kind: &str) -> Option<&'static Chinese> {
+    chinese::of(kind).filter(|_| known.language() == Language::Chinese)
 }
 
 /// The name of a kind in the language of the window.
 fn name(known: Known<'_>, kind: &'static str) -> &'static str {
-    in_chinese(known, kind).map_or(kind, |told| &told.name)
+    in_chinese(known, kind).map_or(kind, |chinese| &chinese.name)
 }
 
 /// What a finding says in the language of the window; in English where the table of the other lacks it.
 fn said(known: Known<'_>, finding: &Finding) -> String {
-    let chinese = in_chinese(known, finding.kind).and_then(|told| told.say(&finding.text));
+    let chinese = in_chinese(known, finding.kind).and_then(|chinese| chinese.say(&finding.text));
     chinese.unwrap_or_else(|| sentence(&finding.text))
 }
 
 /// The same, with what to do.
 pub(super) fn whole(known: Known<'_>, finding: &Finding) -> String {
     match in_chinese(known, finding.kind) {
-        Some(told) => format!("{}{}。", said(known, finding), told.remedy),
+        Some(chinese) => format!("{}{}。", said(known, finding), chinese.remedy),
         None => sentence(&finding.sentence()),
     }
 }
@@ -99,8 +99,8 @@ fn checked(
     let title = CollapsingHeader::new(RichText::new(title).color(colour)).id_salt(check.name);
     let opened = title.default_open(true).show(ui, |ui| {
         match in_chinese(known, check.name) {
-            Some(told) => {
-                for (key, text) in [("why", &told.why), ("remedy", &told.remedy)] {
+            Some(chinese) => {
+                for (key, text) in [("why", &chinese.why), ("remedy", &chinese.remedy)] {
                     ui.weak(format!("{}：{text}。", known.t(key)));
                 }
             }

@@ -3,8 +3,8 @@
 use beadwright::Finding;
 use beadwright::check::CHECKS;
 use beadwright::warning::{Warning, WarningKind, Warnings};
+use beadwright_studio::chinese;
 use beadwright_studio::text::{Language, table};
-use beadwright_studio::told;
 use glam::DVec2;
 use std::fs;
 use std::path::Path;
@@ -81,18 +81,18 @@ fn is_plain(word: &str) -> bool {
 }
 
 #[test]
-fn every_finding_is_told_in_chinese() {
+fn every_finding_has_words_in_chinese() {
     let mut kinds: Vec<&str> = CHECKS.iter().map(|check| check.name).collect();
     kinds.extend(WarningKind::ALL.map(|kind| kind.about().name));
     kinds.push("lost-geometry");
     for kind in &kinds {
-        let told = told::told(kind).unwrap_or_else(|| panic!("{kind} is not told"));
+        let words = chinese::of(kind).unwrap_or_else(|| panic!("{kind} has no words"));
         assert!(
-            [&told.name, &told.why, &told.remedy].iter().all(|text| text.chars().any(|c| c > '\u{3000}')),
+            [&words.name, &words.why, &words.remedy].iter().all(|text| text.chars().any(|c| c > '\u{3000}')),
             "{kind}"
         );
     }
-    assert!(told::table().keys().all(|key| kinds.contains(&&**key)), "a kind of findings is not one of the library");
+    assert!(chinese::table().keys().all(|key| kinds.contains(&&**key)), "a kind of findings is not one of the library");
     let mut sentences: Vec<(&str, String)> =
         CHECKS.iter().map(|check| (check.name, check.example.to_owned())).collect();
     for kind in WarningKind::ALL {
@@ -105,14 +105,14 @@ fn every_finding_is_told_in_chinese() {
         }
     }
     for (kind, sentence) in sentences {
-        let said = told::told(kind).unwrap().say(&sentence).unwrap_or_else(|| panic!("{kind}: {sentence}"));
+        let said = chinese::of(kind).unwrap().say(&sentence).unwrap_or_else(|| panic!("{kind}: {sentence}"));
         let numbers = |text: &str| text.chars().filter(char::is_ascii_digit).count();
         assert_eq!(numbers(&said), numbers(&sentence), "{said} of {sentence}");
         let breaks = |c: char| c.is_whitespace() || (c > '\u{3000}') || "(),:".contains(c);
         let english: Vec<&str> = said.split(breaks).filter(|word| !is_plain(word)).collect();
         assert!(english.is_empty(), "{english:?} in {said}");
     }
-    assert_eq!(told::told("void").unwrap().say("Layer 3: something else."), None);
+    assert_eq!(chinese::of("void").unwrap().say("Layer 3: something else."), None);
 }
 
 #[test]

@@ -99,13 +99,13 @@ fn a_better_place_for_the_part_is_suggested_and_forgotten_with_the_plan() {
         wait(harness);
     };
     press(&mut harness, "Check reach");
-    let told = |harness: &Window| harness.query_by_label_contains("The part's origin at").is_some();
-    assert!(!told(&harness));
+    let shown = |harness: &Window| harness.query_by_label_contains("The part's origin at").is_some();
+    assert!(!shown(&harness));
     press(&mut harness, "Find a better place");
-    assert!(told(&harness));
+    assert!(shown(&harness));
     harness.state_mut().set_value("process.deposition_speed", "10");
     wait(&mut harness);
-    assert!(!told(&harness));
+    assert!(!shown(&harness));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 
 /// A kind of findings in Chinese.
 #[derive(Debug, Deserialize)]
-pub struct Told {
+pub struct Chinese {
     /// Its name.
     pub name: String,
     /// Why it matters.
@@ -19,17 +19,17 @@ pub struct Told {
 }
 
 /// A kind of findings by its English name; `None` if the table lacks it.
-pub fn told(kind: &str) -> Option<&'static Told> {
+pub fn of(kind: &str) -> Option<&'static Chinese> {
     table().get(kind)
 }
 
 /// The kinds by their English names.
-pub fn table() -> &'static HashMap<String, Told> {
-    static TABLE: OnceLock<HashMap<String, Told>> = OnceLock::new();
+pub fn table() -> &'static HashMap<String, Chinese> {
+    static TABLE: OnceLock<HashMap<String, Chinese>> = OnceLock::new();
     TABLE.get_or_init(|| toml::from_str(include_str!("findings.toml")).unwrap_or_default())
 }
 
-impl Told {
+impl Chinese {
     /// A sentence of the library in Chinese, with the place that stands before it; `None` if the table lacks it.
     pub fn say(&self, text: &str) -> Option<String> {
         let placed =
