@@ -7,13 +7,8 @@ use crate::layer::{self, Layer};
 use crate::metrics::Metrics;
 use crate::model::Mesh;
 use crate::pass::{Pass, Segment};
-<<<<<<< HEAD
 use crate::plan::{self, AsWelded, Header, PlanError, Sink};
-use crate::profile::Profile;
-=======
-use crate::plan::{self, Header, PlanError, Sink};
 use crate::profile::{CheckLimits, Profile};
->>>>>>> h43
 use crate::report::encode;
 use crate::report::plot::{Curve, Plot};
 use crate::report::sheet::Sheet;
