@@ -18,6 +18,7 @@ use beadwright::{check, example, plan_file};
 use common::profile;
 use glam::{DMat3, DVec2, DVec3};
 use std::convert::Infallible;
+use std::f64::consts::FRAC_PI_2;
 
 fn with_bodies(bodies: &str) -> Profile {
     let mut profile = profile("cmt-al2319-kuka");
@@ -521,32 +522,26 @@ fn directions_that_are_found_are_planned() {
     }
 }
 
-/// A box from its lowest to its highest corner, mm, turned about z.
-fn block(low: [f64; 3], high: [f64; 3], degrees: f64) -> Mesh {
-    let [a, b] = [low, high].map(|[x, y, _]| DVec2::new(x, y));
-    let ring = Ring::new(vec![a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)]);
-    let Solid { vertices, triangles } = Solid::extrude(&Polygon::simple(ring), low[2], high[2]);
-    let turn = DMat3::from_rotation_z(degrees.to_radians());
-    Mesh::from_triangles(vertices.into_iter().map(|p| turn * p).collect(), triangles).0
-}
-
 /// What is offered first can be welded, and what cannot says why: a post with two arms, and a bridge on two posts, which planes
 /// cannot divide.
 #[test]
 fn directions_that_are_offered_first_can_be_welded() {
     let profile = profile("cmt-steel-abb");
     let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
-    let found = |blocks: &[([f64; 3], [f64; 3])], degrees: f64| -> (Mesh, Found) {
-        let mut mesh = Mesh::default();
-        blocks.iter().for_each(|(low, high)| mesh.add(block(*low, *high, degrees)));
+    // A sheet 40 mm thick with an outline in x and z, mm, turned about z.
+    let found = |outline: &[[f64; 2]], degrees: f64| -> (Mesh, Found) {
+        let turn = DMat3::from_rotation_z(degrees.to_radians()) * DMat3::from_rotation_x(FRAC_PI_2);
+        let outline = Polygon::simple(Ring::new(outline.iter().copied().map(DVec2::from).collect()));
+        let Solid { vertices, triangles } = Solid::extrude(&outline, 0.0, 40.0);
+        let mesh = Mesh::from_triangles(vertices.into_iter().map(|p| turn * p).collect(), triangles).0;
         let found = tried("post", &imported(mesh.clone()), &profile, false, settings, &Task::new()).unwrap();
         (mesh, found)
     };
-    let arms = [
-        ([-20.0, 0.0, 0.0], [20.0, 40.0, 90.0]),
-        ([20.0, 0.0, 60.0], [90.0, 40.0, 90.0]),
-        ([-80.0, 0.0, 40.0], [-20.0, 40.0, 65.0]),
+    let [left, right] = [
+        [[-20.0, 90.0], [-20.0, 65.0], [-80.0, 65.0], [-80.0, 40.0], [-20.0, 40.0]],
+        [[20.0, 60.0], [90.0, 60.0], [90.0, 90.0], [20.0, 90.0], [0.0, 90.0]],
     ];
+    let arms = [&[[-20.0, 0.0], [20.0, 0.0]], &right[..], &left].concat();
     for degrees in [0.0, 37.0] {
         let (mesh, Found { divisions, tilted, .. }) = found(&arms, degrees);
         let (level, tried) = divisions.split_last().unwrap();
@@ -562,9 +557,14 @@ fn directions_that_are_offered_first_can_be_welded() {
         assert!(metrics.coverage() > 0.99, "{degrees}°: {}", metrics.coverage());
     }
     let posts = [
-        ([-60.0, 0.0, 0.0], [-30.0, 40.0, 60.0]),
-        ([30.0, 0.0, 0.0], [60.0, 40.0, 60.0]),
-        ([-60.0, 0.0, 60.0], [60.0, 40.0, 90.0]),
+        [-60.0, 0.0],
+        [-30.0, 0.0],
+        [-30.0, 60.0],
+        [30.0, 60.0],
+        [30.0, 0.0],
+        [60.0, 0.0],
+        [60.0, 90.0],
+        [-60.0, 90.0],
     ];
     let (_, Found { divisions, level, .. }) = found(&posts, 0.0);
     assert!((level - 60.0 * 40.0).abs() < 1.0, "{level}");
