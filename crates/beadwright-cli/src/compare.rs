@@ -1,7 +1,7 @@
 //! `beadwright compare`: strategies and programs side by side.
 
-use crate::plan::{deposit_settings, parse_grid, parse_layers, say_size};
-use crate::{model, profile, program, progress};
+use crate::plan::{deposit_settings, parse_grid, parse_layers};
+use crate::{model, profile, program, progress, say};
 use anyhow::Context;
 use beadwright::compare::{self, COLUMNS, Chosen, Entry};
 use beadwright::files::write_file;
@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let names = if arguments.strategy.is_empty() { StrategyName::ALL } else { &arguments.strategy };
     let (task, bar) = progress::task()?;
     let import = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?;
-    say_size(&import.mesh, &profile)?;
+    say::size(&import.mesh, &profile)?;
     let settings = deposit_settings(arguments.grid, &profile, import.mesh.bounds())?;
     let chosen = arguments.layers.clone().flatten();
     let mut entries = Vec::new();

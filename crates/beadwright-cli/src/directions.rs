@@ -1,7 +1,7 @@
 //! `beadwright directions`: finds build directions for the pieces of a model and writes them as a file of bodies for
 //! `plan --bodies`.
 
-use crate::{file, model, plan, profile, progress, say};
+use crate::{file, model, profile, progress, say};
 use anyhow::Context;
 use beadwright::chart::Chart;
 use beadwright::directions::{Division, Found, Outcome, Settings, Tried, tried, untried};
@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Found { divisions, level, tilted } = if arguments.no_trial {
         untried(&name, &part, settings, &task)?
     } else {
-        part.mesh().map_or(Ok(()), |mesh| plan::say_size(mesh, &profile))?;
+        part.mesh().map_or(Ok(()), |mesh| say::size(mesh, &profile))?;
         tried(&name, &part, &profile, false, settings, &task)?
     };
     bar.finish_and_clear();

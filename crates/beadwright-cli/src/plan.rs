@@ -15,9 +15,9 @@ use beadwright::finding::Words;
 use beadwright::layer::Layer;
 use beadwright::metrics::Metrics;
 use beadwright::model::together::Place;
-use beadwright::model::{Mesh, Part, RepairReport};
+use beadwright::model::{Part, RepairReport};
 use beadwright::plan::choice::{self, Choice};
-use beadwright::plan::{self, Expected, Header, MAX_LAYERS, PlanError, Sink, Summary};
+use beadwright::plan::{self, Header, MAX_LAYERS, PlanError, Sink, Summary};
 use beadwright::planar::Bounds;
 use beadwright::profile::{Body, Profile};
 use beadwright::read_back;
@@ -258,7 +258,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Build { whole: model, base, places, lowest_first } = arguments.build(&profile, &task)?;
     profile.layers.base = base.as_ref().map(|base| [base.bounds().0, base.bounds().1].map(|corner| corner.to_array()));
     if let Part::Mesh(import) = &model {
-        say_size(&import.mesh, &profile)?;
+        say::size(&import.mesh, &profile)?;
     }
     let kept = arguments.strategy.is_some();
     let mut divided = None;
@@ -344,23 +344,6 @@ fn selection_exists(selection: &Selection, layers: usize) -> anyhow::Result<()> 
         anyhow::bail!("--layers: layer {} lies above the part, which has {layers} layers", beyond + 1);
     }
     Ok(())
-}
-
-/// Prints how large a large plan will be, before it is made.
-pub(crate) fn say_size(mesh: &Mesh, profile: &Profile) -> std::io::Result<()> {
-    let Some(Expected { layers, layer_length, .. }) = plan::expected(mesh, profile).filter(|expected| expected.large)
-    else {
-        return Ok(());
-    };
-    let (metres, kilometres) = (layer_length / 1e3, layers * layer_length / 1e6);
-    writeln!(
-        say::done(true),
-        "about {layers} layers with {metres:.0} m of bead each, {kilometres:.1} km in all, are to be planned, which may take \
-         many minutes. If that is not intended, press Ctrl-C and check bead.width ({} mm), layers.height ({} mm) and the unit \
-         of the model.",
-        profile.bead.width,
-        profile.layers.height
-    )
 }
 
 /// Why a model was not planned.

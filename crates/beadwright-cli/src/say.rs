@@ -1,5 +1,7 @@
 //! How much is said: `--quiet` and `--verbose`.
 
+use beadwright::plan::{Expected, expected};
+use beadwright::{Mesh, Profile};
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -54,4 +56,20 @@ pub(crate) fn warnings() -> Box<dyn Write> {
 pub(crate) struct Findings {
     pub(crate) count: usize,
     pub(crate) place: PathBuf,
+}
+
+/// Prints how large a large plan will be, before it is made.
+pub(crate) fn size(mesh: &Mesh, profile: &Profile) -> std::io::Result<()> {
+    let Some(Expected { layers, layer_length, .. }) = expected(mesh, profile).filter(|expected| expected.large) else {
+        return Ok(());
+    };
+    let (metres, kilometres) = (layer_length / 1e3, layers * layer_length / 1e6);
+    writeln!(
+        done(true),
+        "about {layers} layers with {metres:.0} m of bead each, {kilometres:.1} km in all, are to be planned, which may take \
+         many minutes. If that is not intended, press Ctrl-C and check bead.width ({} mm), layers.height ({} mm) and the unit \
+         of the model.",
+        profile.bead.width,
+        profile.layers.height
+    )
 }

@@ -3,6 +3,7 @@
 //! Its floor is the highest surface under the scan whose sides are no steeper than allowed. It ends where the part does, and at steps of
 //! the part, so that no wall beside the damage is milled. Layers follow a floor that is flat enough; otherwise they are level.
 
+use super::beside::{away, beyond, neighbours};
 use super::found::Found;
 use super::mouth::{self, Face};
 use super::{Reason, Settings, Unfilled, tips};
@@ -508,21 +509,4 @@ fn sweeps(count: usize) -> impl Iterator<Item = usize> {
 /// Whether the part has no step between two places.
 fn is_even(top: &[Option<f64>], a: usize, b: usize, away: f64) -> bool {
     matches!((top[a], top[b]), (Some(a), Some(b)) if (a - b).abs() <= STEP * away)
-}
-
-/// The places around one, and how far away they are, mm.
-fn neighbours(grid: &Grid, k: usize) -> impl Iterator<Item = (usize, f64)> {
-    let ways = (-1..=1).flat_map(|y| (-1..=1).map(move |x| (x, y))).filter(|way| *way != (0, 0));
-    ways.filter_map(move |way| beyond(grid, k, way))
-}
-
-/// The place some steps from another, where the grid has it, and how far away it is, mm.
-pub(super) fn beyond(grid: &Grid, k: usize, way: (isize, isize)) -> Option<(usize, f64)> {
-    let column = (k % grid.columns).checked_add_signed(way.0).filter(|column| *column < grid.columns)?;
-    let row = (k / grid.columns).checked_add_signed(way.1).filter(|row| *row < grid.rows)?;
-    Some((row * grid.columns + column, away(way, grid.step)))
-}
-
-pub(super) fn away(way: (isize, isize), step: f64) -> f64 {
-    DVec2::new(way.0 as f64, way.1 as f64).length() * step
 }

@@ -4,6 +4,7 @@
 //! open: what is missing is the part's height less that of the scan. Layers follow the floor of a shallow damage. Under others a groove is
 //! milled first, as wide as a bead at least, and filled with level layers.
 
+mod beside;
 mod found;
 mod groove;
 mod mouth;

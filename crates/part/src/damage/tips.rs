@@ -1,6 +1,6 @@
 //! Tips of a part, such as its edges and corners: layers there would be narrower than a bead, so more is welded around them.
 
-use super::groove::{away, beyond};
+use super::beside::{away, beyond};
 use crate::chart::surface::Grid;
 
 /// The part's heights above a layer on a grid, raised around its tips: those of its heights that no disc as wide as a bead (mm)
