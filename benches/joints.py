@@ -21,7 +21,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import directions, trees
 
 NEAR, AROUND, APART = 10.0, 2.0, 1.0
-# Of the whole part, one place of so many is looked at.
+# Of the places of the whole part, every eleventh is looked at.
 WHOLE = 11
 PIPES = ("t", "y60", "four")
 PICTURED = ["t", "y60", "t, pipes", "y60, pipes"]

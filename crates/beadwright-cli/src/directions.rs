@@ -79,11 +79,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let import = arguments.model.placed(&profile, model::Use::AsDrawn, &task)?;
     let (name, open_edges) = (arguments.model.part(), import.repair.open_edges);
     let settings = Settings { lean: arguments.lean, tilt: arguments.tilt, bead: profile.bead.width };
+    if !arguments.no_trial {
+        say::size(&import.mesh, &profile)?;
+    }
     let part = Part::Mesh(import);
     let Found { divisions, level, tilted } = if arguments.no_trial {
         untried(&name, &part, settings, &task)?
     } else {
-        part.mesh().map_or(Ok(()), |mesh| say::size(mesh, &profile))?;
         tried(&name, &part, &profile, false, settings, &task)?
     };
     bar.finish_and_clear();
@@ -101,8 +103,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if only {
         writeln!(out, "No other direction avoids much of it.")?;
     }
-    if let Some(Outcome::Refused(_)) = found.first().map(|found| &found.outcome) {
-        let hangs = |found: &Tried| matches!(&found.outcome, Outcome::Refused(why) if why.contains(HANGS));
+    if let Some(Outcome::Refused { .. }) = found.first().map(|found| &found.outcome) {
+        let hangs = |found: &Tried| matches!(found.outcome, Outcome::Refused { hangs: true, .. });
         let preform = if found.iter().any(hangs) { ", or add metal below overhangs (plan --preform)" } else { "" };
         writeln!(out, "So the part cannot be welded as it is. Edit the bodies{preform}.")?;
     }
@@ -135,9 +137,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What is said of passes with nothing below.
-const HANGS: &str = "over nothing";
-
 fn sentence(found: &Tried) -> String {
     let Division { pieces, hanging, tilt, lean } = &found.division;
     let bodies = match &pieces[..] {
@@ -165,6 +164,6 @@ fn ending(found: &Tried) -> String {
             let hours = metrics.total_time_s / 3600.0;
             format!(". It can be welded: {hours:.2} h, {:.2} kg of wire{price}.", metrics.wire_mass_kg)
         }
-        Outcome::Refused(reason) => format!(". It cannot be welded: {reason}"),
+        Outcome::Refused { reason, .. } => format!(". It cannot be welded: {reason}"),
     }
 }

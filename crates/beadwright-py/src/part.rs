@@ -201,7 +201,7 @@ impl Part {
         let as_values = |Tried { division, bodies, outcome }: &Tried| {
             let (metrics, refused) = match outcome {
                 Outcome::Planned(metrics) => (Some(metrics), None),
-                Outcome::Refused(reason) => (None, Some(reason)),
+                Outcome::Refused { reason, .. } => (None, Some(reason)),
                 Outcome::Untried => (None, None),
             };
             let value = serde_json::json!({

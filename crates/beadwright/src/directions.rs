@@ -10,6 +10,7 @@ use crate::plan::choice::{Choice, choose};
 use crate::plan::{Header, PlanError, Sink, plan_into};
 use crate::profile::{Body, Profile};
 use crate::task::{Cancelled, Task};
+use crate::warning::WarningKind;
 use std::convert::Infallible;
 
 /// A division, and what came of planning it.
@@ -28,8 +29,13 @@ pub struct Tried {
 pub enum Outcome {
     /// It can be welded.
     Planned(Box<Metrics>),
-    /// It cannot: the first reason, as a sentence.
-    Refused(String),
+    /// It cannot.
+    Refused {
+        /// The first reason, as a sentence.
+        reason: String,
+        /// Whether passes have nothing below them, so that a preform may help.
+        hangs: bool,
+    },
     /// It was not planned.
     Untried,
 }
@@ -129,7 +135,7 @@ const MOST_TILT: f64 = 180.0;
 const NO_LAYERS: [Layer; 0] = [];
 /// What each body more costs, as a share of the price: it is a place to begin, to align and to check.
 const BODY: f64 = 0.03;
-/// What it costs that a share of the part stays bare, as so many times that share of the price.
+/// Each per cent of the part that stays bare counts as this many per cent of the price.
 const BARE: f64 = 2.0;
 
 impl Tried {
@@ -143,16 +149,19 @@ impl Tried {
         let posts = profile.posts.iter().filter(|post| !own::is_folder(post));
         let mut errors = posts.filter_map(|post| dialect::write(post, &NO_LAYERS, &profile.job(name)).err());
         if let Some(error) = errors.next() {
-            return Ok(Self { outcome: Outcome::Refused(error.to_string()), ..self });
+            return Ok(Self { outcome: Outcome::Refused { reason: error.to_string(), hangs: false }, ..self });
         }
         let Choice { profile, .. } = choose(part, &profile, kept, task)?;
         let outcome = match plan_into(name, part, &profile, task, &mut Nowhere) {
             Ok(summary) => match summary.forbidden.into_iter().next() {
-                Some(reason) => Outcome::Refused(reason),
+                Some(reason) => {
+                    let hangs = summary.warnings.summaries().any(|warning| warning.kind == WarningKind::InTheAir);
+                    Outcome::Refused { reason, hangs }
+                }
                 None => Outcome::Planned(Box::new(summary.metrics)),
             },
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled),
-            Err(error) => Outcome::Refused(error.to_string()),
+            Err(error) => Outcome::Refused { reason: error.to_string(), hangs: false },
         };
         Ok(Self { outcome, ..self })
     }
@@ -182,8 +191,8 @@ impl Tried {
                 let hanging = self.division.hanging / level.max(1.0);
                 (u8::from(self.needs_stock()), price * (1.0 + bodies + bare + hanging))
             }
-            Outcome::Refused(_) if !self.is_level() => (2, 0.0),
-            Outcome::Refused(_) | Outcome::Untried => (3, 0.0),
+            Outcome::Refused { .. } if !self.is_level() => (2, 0.0),
+            Outcome::Refused { .. } | Outcome::Untried => (3, 0.0),
         }
     }
 }

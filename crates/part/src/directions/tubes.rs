@@ -49,7 +49,7 @@ const FLATTEST: f64 = 0.3;
 /// A tube leans at most this much from its layers, °: of 2 mm layers and 7 mm beads, half a bead then lies on the one below.
 const MOST_LEAN: f64 = 60.0;
 /// Flat layers this much off the surface on which they begin, °, soon have room for a bead: in a bar of 15 mm within 4 mm.
-const SKEW: f64 = 15.0;
+const MOST_SKEW: f64 = 15.0;
 /// Directions that are found may lie this much beyond the largest tilt, °.
 const BEYOND: f64 = 1.0;
 /// Pieces of one part may lie this far over their bounds, mm.
@@ -288,7 +288,7 @@ impl Layers {
     /// leans from flat layers, and they from the surface on which they begin.
     fn of(carriers: f64, around: Option<f64>, (flat, skew): (f64, f64), lean: f64) -> (Self, f64) {
         let around = around.map(|around| (Self::Around, around));
-        let flat_soon = (skew <= SKEW).then_some((Self::Flat, flat));
+        let flat_soon = (skew <= MOST_SKEW).then_some((Self::Flat, flat));
         let mut all = vec![(Self::Carriers, carriers)];
         all.extend(around.into_iter().chain(flat_soon));
         let first = all.iter().copied().find(|(_, leans)| *leans <= lean);
