@@ -85,29 +85,35 @@ impl<'a> Field<'a> {
 
     /// The heights of lines.
     pub fn heights(&self, lines: &[Line], settings: &LoopSettings) -> Vec<f32> {
-        let mut heights = vec![0.0; self.lattice.len()];
+        let (mut heights, mut squares) = (vec![0.0; self.lattice.len()], Vec::new());
         for (a, b, width) in lines.iter().flat_map(Line::pieces) {
-            self.stamp(&mut heights, (a + b) / 2.0, a.distance(b), width, settings);
+            self.stamp(&mut heights, &mut squares, (a + b) / 2.0, (a.distance(b), width), settings);
         }
         heights
     }
 
-    /// Adds a short piece, treated as a stationary pool at its middle.
-    fn stamp(&self, heights: &mut [f32], at: DVec2, length: f64, width: f64, settings: &LoopSettings) {
+    /// Adds a short piece of this length and width, treated as a stationary pool at its middle: to all points of the square
+    /// around it, since finding the ends of each row takes longer. `squares` is room for the squared distances of columns.
+    fn stamp(
+        &self,
+        heights: &mut [f32],
+        squares: &mut Vec<f32>,
+        at: DVec2,
+        (length, width): (f64, f64),
+        settings: &LoopSettings,
+    ) {
         let Lattice { columns, rows, step, .. } = *self.lattice;
         let (at, radius) = (self.lattice.in_steps(at), width / 2.0 / step);
-        let factor = settings.height_of(width) * length / (step * radius);
-        let low = from(at.y - radius);
-        let high = ((at.y + radius) as usize).min(rows - 1);
-        for row in low..=high {
+        let height = settings.height_of(width) * length / (step * radius);
+        let reached = |at: f64, count: usize| from(at - radius)..((at + radius) as usize + 1).min(count);
+        let (rows, reached) = (reached(at.y, rows), reached(at.x, columns));
+        squares.clear();
+        squares.extend(reached.clone().map(|column| (column as f64 - at.x).powi(2) as f32));
+        let lines = heights.chunks_mut(columns).enumerate().take(rows.end).skip(rows.start);
+        for (row, line) in lines {
             let square = radius * radius - (row as f64 - at.y).powi(2);
-            let reach = square.max(0.0).sqrt();
-            let first = from(at.x - reach);
-            let last = ((at.x + reach) as usize).min(columns - 1);
-            if first <= last {
-                let line = &mut heights[row * columns + first..=row * columns + last];
-                pour(line, settings.bead.section, (first as f64 - at.x, square), (factor, radius));
-            }
+            let Some(line) = line.get_mut(reached.clone()) else { continue };
+            pour(line, squares, square as f32, settings.bead.section, (height, radius));
         }
     }
 
@@ -180,20 +186,19 @@ fn from(x: f64) -> usize {
     whole + usize::from((whole as f64) < x)
 }
 
-/// Adds one row of a pool to `line`. In lattice steps: `start` is the row's first point relative to the pool's middle,
-/// `square` the squared half-width of the pool in this row, `radius` that of the pool. `height` is that of a bead laid
-/// by a line of such pools.
-fn pour(line: &mut [f32], section: Section, (start, square): (f64, f64), (height, radius): (f64, f64)) {
-    let (start, square) = (start as f32, square as f32);
-    let inside = |k: usize| {
-        let x = start + k as f32;
-        (square - x * x).max(0.0)
-    };
+/// Adds one row of a pool to `line`. In lattice steps: `squares` are the squared distances of the row's points from the
+/// pool's middle along it, `square` is the squared half-width of the pool in this row, `radius` that of the pool. `height` is
+/// that of a bead laid by a line of such pools. Code without branches, which becomes vector instructions.
+fn pour(line: &mut [f32], squares: &[f32], square: f32, section: Section, (height, radius): (f64, f64)) {
+    let points = line.iter_mut().zip(squares);
     match section {
-        Section::Ellipse | Section::Stadium => line.iter_mut().for_each(|h| *h += (0.5 * height) as f32),
+        Section::Ellipse | Section::Stadium => {
+            let half = (0.5 * height) as f32;
+            points.for_each(|(h, x)| *h += if *x <= square { half } else { 0.0 });
+        }
         Section::Parabola => {
             let factor = (height * FRAC_2_PI / radius) as f32;
-            line.iter_mut().enumerate().for_each(|(k, h)| *h += factor * inside(k).sqrt());
+            points.for_each(|(h, x)| *h += factor * (square - x).max(0.0).sqrt());
         }
     }
 }
