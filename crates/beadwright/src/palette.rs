@@ -66,6 +66,12 @@ pub const fn kind(kind: PassKind) -> Rgb {
     }
 }
 
+/// The colour of a body of a part, by its index; it comes again after five.
+pub fn body(index: usize) -> Rgb {
+    let [colours @ .., _black] = CURVES;
+    colours[index % colours.len()]
+}
+
 /// What has no value.
 pub fn missing(dark: bool) -> Rgb {
     if dark { [112, 116, 122] } else { [168, 172, 178] }

@@ -27,7 +27,7 @@ def figure(rows: Sequence[dict[str, Any]], x: str, y: str, best: Sequence[dict[s
         own = [row for row in rows if row["part"] == name and row[x] is not None and row[y] is not None]
         axes.scatter([row[x] for row in own], [row[y] for row in own], s=14, label=name)
     line = sorted(best, key=lambda row: (row[x], row[y]))
-    axes.plot([row[x] for row in line], [row[y] for row in line], color="#d92d3a", linewidth=1, label="best")
+    axes.plot([row[x] for row in line], [row[y] for row in line], color="#ff338f", linewidth=1, label="best")
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.legend(frameon=False)
