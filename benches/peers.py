@@ -7,9 +7,13 @@ with their other settings as they come. CPU is user and system time together, so
 matter; each figure is the median of RUNS by CPU. With --welder, weld beads are planned by us with the profile
 cmt-al2319-kuka and compound paths, as a welder would: joints, checks and thin places with them.
 
+With --plain, other parts: as large as weld beads need them, planned by us without any flag but the surface's meaning (the
+built-in profile, one loop an island, judged, report and KRL program, also where the judgement refuses it), beside peers set to fill the same layers with beads
+of the same width.
+
 Debian: apt-get install prusa-slicer cura-engine cura   (cura holds the definitions, else $CURA_DEFINITIONS)
 Usage: benches/peers.py [--runs 3] [--cases plate_holes,…] [--turn 0] [--settings equal,default] [--judged] [--welder]
-                        [--json FILE] [--binary target/release/beadwright]
+                        [--plain] [--json FILE] [--binary target/release/beadwright]
 """
 import argparse, concurrent.futures, gzip, json, math, os, pathlib, shutil, struct, subprocess, tempfile
 
@@ -31,12 +35,48 @@ CASES = [
     ("propeller_5.39", "bladex_propeller_zup.stl", 1, (5.39, 2.0), 1),
     ("openthruster_x3.66_5.39", "openthruster_prop_cw.stl", 3.66, (5.39, 2.0), 1),
 ]
+# Width and height of the built-in profile's beads.
+PLAIN_BEAD = (7.54, 2.0)
+PLAIN = "plate_holes openthruster_prop_cw rear_case bunny_closed bunny_1114k.stl.gz bladex_propeller_zup featuretype " \
+    "moon_chinese_header star_ascii pulley_t30 propeller_on_hub supportless_sample typhoon_prop_broken branches16 " \
+    "spider_ascii iris_quad_duplicates".split()
+
+
+def plain_cases():
+    """The parts of --plain."""
+    for name in PLAIN:
+        file = name if "." in name else f"{name}.stl"
+        # In another process, as below.
+        with concurrent.futures.ProcessPoolExecutor(1) as other:
+            yield name.removesuffix(".stl.gz"), file, other.submit(plain_scale, file).result(), PLAIN_BEAD, 1
+
+
+def plain_scale(file):
+    """The scale that makes the middle side of a part 200 mm long."""
+    corners = [corner for facet in facets(stl(file)) for corner in facet]
+    return 200 / sorted(max(c[axis] for c in corners) - min(c[axis] for c in corners) for axis in range(3))[1]
+
+
+def stl(name):
+    """A model as a binary STL file."""
+    data = (MODELS / name).read_bytes()
+    data = gzip.decompress(data) if name.endswith(".gz") else data
+    if len(data) == 84 + 50 * struct.unpack_from("<I", data, 80)[0]:
+        return data
+    numbers = [tuple(map(float, line.split()[1:4])) for line in data.decode(errors="replace").splitlines() if line.strip().startswith("vertex")]
+    triangles = [struct.pack("<12fH", 0, 0, 0, *sum(numbers[k:k + 3], ()), 0) for k in range(0, len(numbers), 3)]
+    return bytes(80) + struct.pack("<I", len(triangles)) + b"".join(triangles)
+
+
+def facets(data):
+    """The corners of the triangles of a binary STL file."""
+    for facet in struct.iter_unpack("<12x9f2x", data[84:]):
+        yield facet[:3], facet[3:6], facet[6:]
 
 
 def model(name, scale, turn, work):
     """The model as a plain STL file of the wanted size, turned about z by that many degrees."""
-    data = (MODELS / name).read_bytes()
-    data = bytearray(gzip.decompress(data) if name.endswith(".gz") else data)
+    data = bytearray(stl(name))
     if scale != 1 or turn:
         c, s = scale * math.cos(math.radians(turn)), scale * math.sin(math.radians(turn))
         for at in range(84, len(data) - 49, 50):
@@ -49,6 +89,8 @@ def model(name, scale, turn, work):
 
 
 def ours(binary, part, bead, perimeters, work, given):
+    if given.plain:
+        return [binary, "plan", part, "--units", "mm", "--surface", "solid", "--allow-findings", "-o", work / "ours"]
     if given.welder and bead[0] > 1:
         how = ["-p", "cmt-al2319-kuka", "-s", "compound", "--surface", "solid"]
     else:
@@ -131,6 +173,7 @@ def main():
     arguments.add_argument("--binary", type=pathlib.Path)
     arguments.add_argument("--settings", default="equal,default", help="of the peers")
     arguments.add_argument("--welder", action="store_true", help="weld beads planned as a welder would")
+    arguments.add_argument("--plain", action="store_true", help="our plans without flags, of parts of a welder's size")
     arguments.add_argument("--judged", action="store_true", help="our plans with the deposit model on, as by default")
     arguments.add_argument("--alone", action="store_true", help="leave the peers out")
     given = arguments.parse_args()
@@ -145,7 +188,7 @@ def main():
                 peers[f"{name}, {setting}"] = lambda *case, of=of, equal=setting == "equal": of(*case, equal)
     rows = []
     print(f"{'case':<26}" + "".join(f"{name:>22}" for name in [*peers, "beadwright"]) + "   (CPU s, peak MB)")
-    for name, file, scale, bead, perimeters in CASES:
+    for name, file, scale, bead, perimeters in plain_cases() if given.plain else CASES:
         if given.cases and name not in given.cases.split(","):
             continue
         with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(1) as other:
