@@ -3,8 +3,7 @@
 
 use crate::{file, model, profile, progress, say};
 use anyhow::Context;
-use beadwright::chart::Chart;
-use beadwright::directions::{Division, Found, Outcome, Settings, Tried, tried, untried};
+use beadwright::directions::{Found, Outcome, Settings, Tried, page, tried, untried};
 use beadwright::profile::{Body, Profile};
 use beadwright::{Part, Task};
 use std::io::Write;
@@ -30,6 +29,9 @@ pub(crate) struct Arguments {
     /// File of bodies to write; standard output if left out.
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// HTML page to write: each division in 3-D with its bodies in colours, and its figures.
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
     #[command(flatten)]
     wanted: profile::Wanted,
 }
@@ -49,7 +51,7 @@ pub(crate) fn bodies(
     let settings = Settings { lean: LEAN, tilt: TILT, bead: profile.bead.width };
     let Found { divisions, .. } = tried(name, part, profile, kept, settings, task)?;
     let best = divisions.into_iter().next().with_context(|| name.to_owned())?;
-    let sentence = format!("Directions were found while planning (--directions auto): {}.", sentence(&best));
+    let sentence = format!("Directions were found while planning (--directions auto): {}.", best.described());
     let bodies = if best.is_level() { Vec::new() } else { best.bodies };
     Ok((bodies, sentence))
 }
@@ -83,40 +85,41 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         say::size(&import.mesh, &profile)?;
     }
     let part = Part::Mesh(import);
-    let Found { divisions, level, tilted } = if arguments.no_trial {
+    let found = if arguments.no_trial {
         untried(&name, &part, settings, &task)?
     } else {
         tried(&name, &part, &profile, false, settings, &task)?
     };
     bar.finish_and_clear();
+    if let (Some(page), Some(mesh)) = (&arguments.page, part.mesh()) {
+        file::write(page, page::page(&name, mesh, &found).html().as_bytes())?;
+    }
     let model = &arguments.model.model;
     let mut out = say::done(arguments.output.is_none());
     let lean = arguments.lean;
-    writeln!(out, "level layers: {:.1} cm² overhang by more than {lean}°", level / 100.0)?;
-    // Level layers are offered where nothing else is found, or nothing else can be welded.
-    let only = divisions.len() == 1;
-    let is_offered = |found: &Tried| only || !found.is_level() || found.is_planned();
-    let found: Vec<Tried> = divisions.into_iter().filter(is_offered).collect();
-    for (number, found) in found.iter().enumerate() {
-        writeln!(out, "{}. {}{}", number + 1, sentence(found), ending(found))?;
+    writeln!(out, "level layers: {:.1} cm² overhang by more than {lean}°", found.level / 100.0)?;
+    let offered: Vec<&Tried> = found.offered().collect();
+    for (number, tried) in offered.iter().enumerate() {
+        let verdict = tried.verdict().map_or(String::new(), |verdict| format!(" {verdict}"));
+        writeln!(out, "{}. {}.{verdict}", number + 1, tried.described())?;
     }
-    if only {
+    if found.divisions.len() == 1 {
         writeln!(out, "No other direction avoids much of it.")?;
     }
-    if let Some(Outcome::Refused { .. }) = found.first().map(|found| &found.outcome) {
-        let hangs = |found: &Tried| matches!(found.outcome, Outcome::Refused { hangs: true, .. });
-        let preform = if found.iter().any(hangs) { ", or add metal below overhangs (plan --preform)" } else { "" };
+    if let Some(Outcome::Refused { .. }) = offered.first().map(|tried| &tried.outcome) {
+        let hangs = |tried: &&Tried| matches!(tried.outcome, Outcome::Refused { hangs: true, .. });
+        let preform = if offered.iter().any(hangs) { ", or add metal below overhangs (plan --preform)" } else { "" };
         writeln!(out, "So the part cannot be welded as it is. Edit the bodies{preform}.")?;
     }
-    if let Some(tilted) = tilted {
+    if let Some(tilted) = &found.tilted {
         let (tilt, pieces) = (tilted.division.tilt.ceil(), tilted.bodies.len());
         writeln!(out, "As {pieces} bodies it could be welded with --tilt {tilt}, if the part can be turned so far.")?;
     }
     if open_edges > 0 {
         writeln!(out, "The surface is open ({open_edges} edges); bodies are made of solids.")?;
     }
-    let Some(Tried { bodies, .. }) = found.get(arguments.choice as usize - 1) else {
-        anyhow::bail!("--choice {}: there are {} to choose from", arguments.choice, found.len());
+    let Some(Tried { bodies, .. }) = offered.get(arguments.choice as usize - 1) else {
+        anyhow::bail!("--choice {}: there are {} to choose from", arguments.choice, offered.len());
     };
     let text = Body::write(bodies);
     match &arguments.output {
@@ -134,36 +137,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         None => write!(std::io::stdout(), "{text}")?,
     }
-    Ok(())
-}
-
-fn sentence(found: &Tried) -> String {
-    let Division { pieces, hanging, tilt, lean } = &found.division;
-    let bodies = match &pieces[..] {
-        [_] if found.is_level() => return "level layers".to_owned(),
-        [piece] => match &piece.chart {
-            Chart::Guide(guide) => format!("1 body along its middle line, {:.0} mm long", guide.length()),
-            chart => format!("1 body on {chart}"),
-        },
-        pieces => format!("{} bodies", pieces.len()),
-    };
-    let stock =
-        if found.needs_stock() { ", on metal that is there already (the hub, turned from bar stock)" } else { "" };
-    let leans = lean.map_or(String::new(), |lean| {
-        format!(", walls that lean by up to {lean:.0}° (square to them, layers would begin with no room for a bead)")
-    });
-    format!("{bodies}{stock}: {:.1} cm² overhang, layers at up to {tilt:.0}° from level{leans}", hanging / 100.0)
-}
-
-/// What came of planning it, as the end of a sentence.
-fn ending(found: &Tried) -> String {
-    match &found.outcome {
-        Outcome::Untried => ".".to_owned(),
-        Outcome::Planned(metrics) => {
-            let price = metrics.cost.map_or(String::new(), |cost| format!(", {cost:.0} {}", metrics.currency));
-            let hours = metrics.total_time_s / 3600.0;
-            format!(". It can be welded: {hours:.2} h, {:.2} kg of wire{price}.", metrics.wire_mass_kg)
-        }
-        Outcome::Refused { reason, .. } => format!(". It cannot be welded: {reason}"),
+    if let Some(page) = &arguments.page {
+        writeln!(out, "{} shows them.", page.display())?;
     }
+    Ok(())
 }

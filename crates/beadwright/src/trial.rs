@@ -79,7 +79,8 @@ impl PlatePlan {
         let (mut files, mut chunks) = PlanFiles::begin(&header, &self.profile, programs, Selection::default())?;
         self.layers.iter().for_each(|layer| chunks.extend(files.layer(layer, None)));
         let (metrics, forbidden) = (self.metrics(), self.profile.forbidden());
-        let summary = Summary { metrics, warnings: Warnings::default(), notes: files.notes(), forbidden };
+        let (warnings, notes) = (Warnings::default(), files.notes());
+        let summary = Summary { metrics, warnings, notes, forbidden, blocked: Vec::new() };
         chunks.extend(files.end(&summary, &RepairReport::default(), None)?);
         Ok(chunks)
     }

@@ -194,9 +194,11 @@ fn faults_of_a_file_of_bodies_are_named() {
 fn a_part_is_divided_while_it_is_planned() {
     let folder = TempDir::new().unwrap();
     done(folder.path(), &["example", "hub", "-o", "hub.stl"]);
-    let output = run(folder.path(), &["directions", "hub.stl", "-o", "found.toml"]);
+    let output = run(folder.path(), &["directions", "hub.stl", "-o", "found.toml", "--page", "found.html"]);
     let said = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success() && said.contains("It can be welded: "), "{said}");
+    assert!(output.status.success() && said.contains("It can be welded: ") && said.contains("found.html"), "{said}");
+    let page = std::fs::read_to_string(folder.path().join("found.html")).unwrap();
+    assert!(page.contains("class=\"card coloured\"") && page.contains("It can be welded: "));
     let plan = |part: &str, how: &[&str]| {
         let all = [&["plan", part, "--no-deposit", "--json", "-o", "out"], how].concat();
         let json: serde_json::Value = serde_json::from_str(&done(folder.path(), &all)).unwrap();

@@ -172,7 +172,8 @@ impl Adapted {
             take(files.layer(layer, None))?;
         }
         let notes = sentences.into_iter().chain(files.notes()).collect();
-        let summary = Summary { metrics, warnings: Warnings::default(), notes, forbidden: profile.forbidden() };
+        let (warnings, forbidden) = (Warnings::default(), profile.forbidden());
+        let summary = Summary { metrics, warnings, notes, forbidden, blocked: Vec::new() };
         take(files.end(&summary, &RepairReport::default(), None)?)
     }
 }

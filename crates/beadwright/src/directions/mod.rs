@@ -1,5 +1,8 @@
 //! Ways to divide a part into bodies, each planned for trial, so that what is offered first can be welded.
 
+pub mod page;
+mod sentence;
+
 pub use bead_part::directions::{Division, Piece, Settings, by_planes, divisions};
 
 use crate::dialect::{self, own};
@@ -7,10 +10,11 @@ use crate::layer::Layer;
 use crate::metrics::Metrics;
 use crate::model::Part;
 use crate::plan::choice::{Choice, choose};
-use crate::plan::{Header, PlanError, Sink, plan_into};
+use crate::plan::{Blocked, Header, PlanError, Sink, Summary, plan_into};
 use crate::profile::{Body, Profile};
 use crate::task::{Cancelled, Task};
 use crate::warning::WarningKind;
+use std::collections::VecDeque;
 use std::convert::Infallible;
 
 /// A division, and what came of planning it.
@@ -56,6 +60,8 @@ pub struct Found {
 /// pieces cut off by planes, in level layers. `name` is that of a part in one piece; `kept` is whether the strategy of the profile was
 /// asked for ([`choose`]).
 ///
+/// Where the torch would hit a finished body, the bodies are tried in other orders ([`Blocked`]).
+///
 /// The order is that of the price, or of the time where the profile has no prices. It counts 3 % higher for each body more than one,
 /// twice the share that stays bare, and as much as what overhangs is of that in level layers. Metal that must be there
 /// already, such as a hub, is not in the price, so what needs it comes after what does not.
@@ -85,20 +91,22 @@ pub fn tried(
     task: &Task,
 ) -> Result<Found, PlanError<Infallible>> {
     let mesh = part.mesh().ok_or(PlanError::ChartOfCurves)?;
-    let trial = |untried: Tried| untried.tried(name, part, profile, kept, task);
+    let trials = Trials { name, part, profile, kept, task };
+    let trial = |division: Division| trials.of(division);
     let mut found = untried(name, part, settings, task)?;
     let whole = found.divisions.split_off(found.divisions.len().saturating_sub(1));
-    let mut tried = found.divisions.into_iter().map(trial).collect::<Result<Vec<_>, Cancelled>>()?;
+    let mut tried =
+        found.divisions.into_iter().map(|found| trial(found.division)).collect::<Result<Vec<_>, Cancelled>>()?;
     // Planes are searched for what is recognized only if it overhangs.
     let welds_it_all = |tried: &Tried| tried.is_planned() && !tried.needs_stock();
     if !tried.is_empty() && !tried.iter().any(welds_it_all) {
         let is_known = |division: &Division| tried.iter().any(|tried| tried.division == *division);
         let more = by_planes(mesh, settings, task)?.into_iter().filter(|division| !is_known(division));
-        let more = more.map(|division| trial(Tried::of(name, division))).collect::<Result<Vec<_>, Cancelled>>()?;
+        let more = more.map(trial).collect::<Result<Vec<_>, Cancelled>>()?;
         tried.extend(more);
     }
     let can = tried.iter().any(Tried::is_planned);
-    let whole = whole.into_iter().map(|whole| if can { Ok(whole) } else { trial(whole) });
+    let whole = whole.into_iter().map(|whole| if can { Ok(whole) } else { trial(whole.division) });
     tried.extend(whole.collect::<Result<Vec<_>, Cancelled>>()?);
     tried.sort_by(|a, b| {
         let [(a, price_a), (b, price_b)] = [a, b].map(|tried| tried.rank(found.level));
@@ -108,7 +116,7 @@ pub fn tried(
     if !found.divisions.iter().any(Tried::is_planned) {
         let farther = divisions(mesh, Settings { tilt: MOST_TILT, ..settings }, task)?.into_iter();
         for division in farther.filter(|division| division.tilt > settings.tilt + 1.0) {
-            let tilted = trial(Tried::of(name, division))?;
+            let tilted = trial(division)?;
             if tilted.is_planned() {
                 found.tilted = Some(tilted);
                 break;
@@ -137,33 +145,20 @@ const NO_LAYERS: [Layer; 0] = [];
 const BODY: f64 = 0.03;
 /// Each per cent of the part that stays bare counts as this many per cent of the price.
 const BARE: f64 = 2.0;
+/// Orders of its bodies in which a division is planned at most, after its own.
+const ORDERS: usize = 6;
+
+impl Found {
+    /// What is worth choosing from: level layers only where nothing else is found, or nothing else can be welded.
+    pub fn offered(&self) -> impl Iterator<Item = &Tried> {
+        let only = self.divisions.len() == 1;
+        self.divisions.iter().filter(move |tried| only || !tried.is_level() || tried.is_planned())
+    }
+}
 
 impl Tried {
     fn of(name: &str, division: Division) -> Self {
         Self { bodies: Body::of_division(name, &division), division, outcome: Outcome::Untried }
-    }
-
-    fn tried(self, name: &str, part: &Part, profile: &Profile, kept: bool, task: &Task) -> Result<Self, Cancelled> {
-        let mut profile = profile.clone();
-        profile.layers.bodies.clone_from(&self.bodies);
-        let posts = profile.posts.iter().filter(|post| !own::is_folder(post));
-        let mut errors = posts.filter_map(|post| dialect::write(post, &NO_LAYERS, &profile.job(name)).err());
-        if let Some(error) = errors.next() {
-            return Ok(Self { outcome: Outcome::Refused { reason: error.to_string(), hangs: false }, ..self });
-        }
-        let Choice { profile, .. } = choose(part, &profile, kept, task)?;
-        let outcome = match plan_into(name, part, &profile, task, &mut Nowhere) {
-            Ok(summary) => match summary.forbidden.into_iter().next() {
-                Some(reason) => {
-                    let hangs = summary.warnings.summaries().any(|warning| warning.kind == WarningKind::InTheAir);
-                    Outcome::Refused { reason, hangs }
-                }
-                None => Outcome::Planned(Box::new(summary.metrics)),
-            },
-            Err(PlanError::Cancelled(cancelled)) => return Err(cancelled),
-            Err(error) => Outcome::Refused { reason: error.to_string(), hangs: false },
-        };
-        Ok(Self { outcome, ..self })
     }
 
     /// Whether it was planned and can be welded.
@@ -195,6 +190,75 @@ impl Tried {
             Outcome::Refused { .. } | Outcome::Untried => (3, 0.0),
         }
     }
+}
+
+/// What divisions of a part are planned with.
+struct Trials<'a> {
+    name: &'a str,
+    part: &'a Part,
+    profile: &'a Profile,
+    /// Whether the strategy of the profile was asked for.
+    kept: bool,
+    task: &'a Task,
+}
+
+impl Trials<'_> {
+    /// Plans a division, and, where the torch would hit a body, in other orders of its pieces.
+    fn of(&self, division: Division) -> Result<Tried, Cancelled> {
+        let (first, blocked) = self.in_order(division)?;
+        let mut seen = vec![first.division.pieces.clone()];
+        let mut open: VecDeque<_> = blocked.iter().flat_map(|blocked| reordered(&first.division, *blocked)).collect();
+        while seen.len() <= ORDERS
+            && let Some(division) = open.pop_front()
+        {
+            if seen.contains(&division.pieces) {
+                continue;
+            }
+            seen.push(division.pieces.clone());
+            let (other, blocked) = self.in_order(division)?;
+            if other.is_planned() {
+                return Ok(other);
+            }
+            open.extend(blocked.iter().flat_map(|blocked| reordered(&other.division, *blocked)));
+        }
+        Ok(first)
+    }
+
+    /// Plans a division in the order of its pieces; and which of them block which there.
+    fn in_order(&self, division: Division) -> Result<(Tried, Vec<Blocked>), Cancelled> {
+        let untried = Tried::of(self.name, division);
+        let mut profile = self.profile.clone();
+        profile.layers.bodies.clone_from(&untried.bodies);
+        let refused = |reason: String| Outcome::Refused { reason, hangs: false };
+        let posts = profile.posts.iter().filter(|post| !own::is_folder(post));
+        let mut errors = posts.filter_map(|post| dialect::write(post, &NO_LAYERS, &profile.job(self.name)).err());
+        if let Some(error) = errors.next() {
+            return Ok((Tried { outcome: refused(error.to_string()), ..untried }, Vec::new()));
+        }
+        let Choice { profile, .. } = choose(self.part, &profile, self.kept, self.task)?;
+        let (outcome, blocked) = match plan_into(self.name, self.part, &profile, self.task, &mut Nowhere) {
+            Ok(Summary { metrics, warnings, forbidden, blocked, .. }) => match forbidden.into_iter().next() {
+                Some(reason) => {
+                    let hangs = warnings.summaries().any(|warning| warning.kind == WarningKind::InTheAir);
+                    (Outcome::Refused { reason, hangs }, blocked)
+                }
+                None => (Outcome::Planned(Box::new(metrics)), Vec::new()),
+            },
+            Err(PlanError::Cancelled(cancelled)) => return Err(cancelled),
+            Err(error) => (refused(error.to_string()), Vec::new()),
+        };
+        Ok((Tried { outcome, ..untried }, blocked))
+    }
+}
+
+/// Two orders in which a piece is welded before the one that blocks it: it comes just before that, or that just after it.
+fn reordered(division: &Division, Blocked { body, by }: Blocked) -> [Division; 2] {
+    [(body, by), (by, body)].map(|(from, to)| {
+        let mut division = division.clone();
+        let piece = division.pieces.remove(from);
+        division.pieces.insert(to, piece);
+        division
+    })
 }
 
 /// Takes layers that nobody needs.

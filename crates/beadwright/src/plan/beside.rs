@@ -1,6 +1,7 @@
 //! Whether the torch has room next to finished bodies, in space: it points along the normal of the layer that it welds
 //! and fills a cone above the wire's tip ([`TorchShape`]).
 
+use super::result::Blocked;
 use super::settings::PlanSettings;
 use super::{Header, Sink};
 use crate::chart::At;
@@ -13,16 +14,26 @@ use rayon::prelude::*;
 /// Finished bodies, and where the torch came too close to one of them.
 pub(super) struct Beside {
     torch: Option<TorchShape>,
-    /// Points on the surfaces of finished bodies, by body, mm.
-    finished: Vec<(String, Vec<DVec3>)>,
+    finished: Vec<Finished>,
     close: Vec<Close>,
+}
+
+/// Metal that is finished.
+struct Finished {
+    /// Index of the body; `None` for what was there before.
+    body: Option<usize>,
+    /// Its name in messages.
+    name: String,
+    /// Points on its surface, mm.
+    points: Vec<DVec3>,
 }
 
 /// The closest that the torch comes to a finished body while it welds another.
 #[derive(Debug, Clone, PartialEq)]
 struct Close {
-    welded: String,
-    finished: String,
+    welded: (usize, String),
+    /// Index of the finished metal.
+    finished: usize,
     /// Where the wire's tip is, and where metal is in the way, mm.
     tip: DVec3,
     metal: DVec3,
@@ -44,9 +55,14 @@ impl Beside {
         Self { torch, finished: Vec::new(), close: Vec::new() }
     }
 
-    /// Adds finished metal; `what` is its name in messages.
-    pub(super) fn finish(&mut self, what: &str, mesh: &Mesh) {
-        self.finished.push((what.to_owned(), surface_points(mesh)));
+    /// Adds metal that is there before the first body; `name` is its name in messages.
+    pub(super) fn begin_on(&mut self, name: &str, mesh: &Mesh) {
+        self.finished.push(Finished { body: None, name: name.to_owned(), points: surface_points(mesh) });
+    }
+
+    /// Adds a finished body.
+    pub(super) fn finish(&mut self, body: usize, name: &str, mesh: &Mesh) {
+        self.finished.push(Finished { body: Some(body), name: format!("\"{name}\""), points: surface_points(mesh) });
     }
 
     /// A note that nothing was checked, where the profile lacks `[torch]`.
@@ -56,10 +72,23 @@ impl Beside {
         })
     }
 
+    /// Which body the torch would hit as it welds which.
+    pub(super) fn blocked(&self) -> Vec<Blocked> {
+        let blocked = |close: &Close| {
+            let by = self.finished[close.finished].body?;
+            Some(Blocked { body: close.welded.0, by })
+        };
+        let mut blocked: Vec<Blocked> = self.close.iter().filter_map(blocked).collect();
+        blocked.sort_unstable();
+        blocked.dedup();
+        blocked
+    }
+
     /// What the torch would hit, as sentences.
     pub(super) fn sentences(&self) -> impl Iterator<Item = String> + '_ {
         self.close.iter().map(|close| {
-            let Close { welded, finished, tip, metal, needs, has, travels } = close;
+            let Close { welded: (_, welded), finished, tip, metal, needs, has, travels } = close;
+            let finished = &self.finished[*finished].name;
             let does = if *travels { "travels over" } else { "welds" };
             format!(
                 "The torch would hit {finished} while it {does} \"{welded}\" at x {:.1} y {:.1} z {:.1} mm: near x {:.1} y {:.1} z {:.1} mm it \
@@ -71,9 +100,9 @@ impl Beside {
     }
 
     /// Checks the torch at places on a body that is being welded.
-    fn look(&mut self, welded: &str, places: &[At], travels: bool) {
+    fn look(&mut self, welded: (usize, &str), places: &[At], travels: bool) {
         let Some(torch) = self.torch else { return };
-        for (finished, points) in &self.finished {
+        for (finished, Finished { points, .. }) in self.finished.iter().enumerate() {
             let worst = places
                 .par_iter()
                 .flat_map_iter(|tip| {
@@ -83,11 +112,10 @@ impl Beside {
                 })
                 .max_by(|a, b| (a.0.0 - a.0.1).total_cmp(&(b.0.0 - b.0.1)));
             if let Some(((needs, has), tip, metal)) = worst {
-                let (welded, finished) = (welded.to_owned(), finished.clone());
+                let welded = (welded.0, welded.1.to_owned());
                 let new = Close { welded, finished, tip: tip.place, metal: *metal, needs, has, travels };
-                let same = |old: &&mut Close| {
-                    old.welded == new.welded && old.finished == new.finished && old.travels == travels
-                };
+                let same =
+                    |old: &&mut Close| old.welded == new.welded && old.finished == finished && old.travels == travels;
                 match self.close.iter_mut().find(same) {
                     Some(old) if old.needs - old.has < needs - has => *old = new,
                     Some(_) => {}
@@ -127,14 +155,19 @@ fn surface_points(mesh: &Mesh) -> Vec<DVec3> {
 pub(super) struct Watch<'a, S> {
     sink: &'a mut S,
     beside: &'a mut Beside,
-    /// Name of the body that is welded.
-    body: &'a str,
+    /// Index and name of the body that is welded.
+    body: (usize, &'a str),
     settings: &'a PlanSettings<'a>,
 }
 
 impl<'a, S> Watch<'a, S> {
     /// `settings` are those of the body.
-    pub(super) fn new(sink: &'a mut S, beside: &'a mut Beside, body: &'a str, settings: &'a PlanSettings<'a>) -> Self {
+    pub(super) fn new(
+        sink: &'a mut S,
+        beside: &'a mut Beside,
+        body: (usize, &'a str),
+        settings: &'a PlanSettings<'a>,
+    ) -> Self {
         Self { sink, beside, body, settings }
     }
 

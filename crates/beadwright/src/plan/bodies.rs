@@ -62,7 +62,7 @@ pub(super) fn bodies_into<S: Sink + Send>(
         .map_err(PlanError::Sink)?;
     let (mut row, mut beside) = (Row::new(whole, sink, owned.len() > 1), Beside::new(whole.torch));
     if let Some(base) = onto {
-        beside.finish(BASE, base);
+        beside.begin_on(BASE, base);
     }
     let placed = ready.iter().filter_map(|ready| match ready.part() {
         PartRef::Mesh { mesh, .. } => Some((ready.own.settings.slicing.chart, mesh)),
@@ -78,17 +78,18 @@ pub(super) fn bodies_into<S: Sink + Send>(
         } else {
             ready.footing(under, task)?
         };
-        let mut watch = Watch::new(&mut row, &mut beside, &own.body.name, &own.settings);
+        let mut watch = Watch::new(&mut row, &mut beside, (k, &own.body.name), &own.settings);
         let start =
             Start { warmth: &ready.warmth, footing, heat: heat.as_mut().map(|heat| heat.before(k, &ready.warmth)) };
         let summary = ready.plan(start, task, &mut watch)?;
         row.finish(&own.body.name, ready.slabs.len(), &summary);
-        beside.finish(&format!("\"{}\"", own.body.name), &own.mesh);
+        beside.finish(k, &own.body.name, &own.mesh);
     }
     let mut summary = row.summary(&format!("The part is welded as {} bodies, one after another", owned.len()));
     summary.notes.extend(beside.note());
     summary.notes.extend(owned.first().filter(|_| onto.is_none()).and_then(Own::on_what_is_there));
     summary.forbidden.extend(beside.sentences());
+    summary.blocked = beside.blocked();
     let twice = welded_twice(mesh, &owned);
     // What lies below a body on stock is already there.
     let bodies = &whole.layers.bodies;

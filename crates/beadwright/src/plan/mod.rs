@@ -72,7 +72,7 @@ pub(crate) use judged::AsWelded;
 pub use judged::{deposit_settings, deposit_settings_over, even, grid_over, welded, welded_alone};
 pub use parts::{parts_into, torch_of};
 pub use preview::preview;
-pub use result::{Collect, Header, Plan, PlanError, Sink, Summary};
+pub use result::{Blocked, Collect, Header, Plan, PlanError, Sink, Summary};
 pub use scan_lines::{ToFill, raster_angle};
 pub(crate) use settings::PlanSettings;
 pub use turns::{Bands, drawn, is_jump, unrolled_once};
@@ -433,7 +433,7 @@ fn run<S: Sink + Send>(
     let open = (asked && !has_helix).then(|| NO_HELIX.to_owned());
     let balanced = settings.filling.laying.order.balance.map(|_| balanced(memory.detour(), settings.weld.travel.speed));
     let notes = large.into_iter().chain(open).chain(balanced).chain(settings.notes.iter().cloned()).collect();
-    Ok(Summary { metrics, warnings, notes, forbidden })
+    Ok(Summary { metrics, warnings, notes, forbidden, blocked: Vec::new() })
 }
 
 /// What it costs to keep heat around the middle of the plate: `detour` is how much longer travels became, mm, at a speed in mm/s.

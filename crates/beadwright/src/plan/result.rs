@@ -48,6 +48,18 @@ pub struct Summary {
     pub notes: Vec<String>,
     /// Why its programs should not be written, as sentences; empty for a plan that can be welded.
     pub forbidden: Vec<String>,
+    /// Bodies for which the torch has no room beside others that are welded before them; `forbidden` says so, too.
+    #[serde(default)]
+    pub blocked: Vec<Blocked>,
+}
+
+/// A body that cannot be welded once another is finished: the torch would hit it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Blocked {
+    /// Index of the body in `layers.bodies`.
+    pub body: usize,
+    /// Index of the finished one.
+    pub by: usize,
 }
 
 impl Summary {

@@ -15,7 +15,6 @@ void main() {
   gl_Position = camera * vec4(place, 1.0);
 }`;
 
-// Faces are flat: their normals follow from how places change across the picture.
 const FACE_SHADER = `#version 300 es
 precision highp float;
 in vec3 place;
@@ -23,11 +22,11 @@ in float part;
 uniform vec3 light;
 uniform vec3 ramp[5];
 out vec4 pixel;
+${LIT_FACE}
 void main() {
-  vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
   float at = clamp(part, 0.0, 1.0) * 4.0;
   int i = min(int(at), 3);
-  pixel = vec4(mix(ramp[i], ramp[i + 1], at - float(i)) * (0.45 + 0.6 * max(dot(normal, light), 0.0)), 1.0);
+  pixel = vec4(lit(mix(ramp[i], ramp[i + 1], at - float(i)), place, light), 1.0);
 }`;
 
 const TIMES = [0, 1, 2, 5, 10, 20, 50, 100, 200, 500];
@@ -47,82 +46,38 @@ const farthest = moved => {
   return most;
 };
 
-function boxAround(at) {
-  const box = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
-  at.forEach((v, i) => { box[0][i % 3] = Math.min(box[0][i % 3], v); box[1][i % 3] = Math.max(box[1][i % 3], v); });
-  return box;
-}
-
-// The buffers of a body on the graphics card; `attribute` 0 is where its nodes are, 1 how they move.
-function loadBody(gl, { at, moved, faces }) {
-  const fill = (target, values) => {
-    const buffer = gl.createBuffer();
-    gl.bindBuffer(target, buffer);
-    gl.bufferData(target, values, gl.STATIC_DRAW);
-    return buffer;
-  };
-  fill(gl.ELEMENT_ARRAY_BUFFER, faces);
-  const buffers = [at, ...moved].map(values => fill(gl.ARRAY_BUFFER, values));
-  return (attribute, buffer) => {
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffers[buffer]);
-    gl.enableVertexAttribArray(attribute);
-    gl.vertexAttribPointer(attribute, 3, gl.FLOAT, false, 12, 0);
-  };
-}
-
 async function showBent(card) {
   const data = JSON.parse(card.querySelector("script").textContent), body = await readBody(data.body);
-  const most = body.moved.map(farthest), box = boxAround(body.at), size = Math.hypot(...box[0].map((v, i) => box[1][i] - v));
+  const most = body.moved.map(farthest), box = boxAround(body.at);
   const choice = make("select", card);
   choice.setAttribute("aria-label", "Shape");
   data.shapes.forEach((name, value) => make("option", choice, { value, textContent: name, selected: value === data.shapes.length - 1 }));
-  const canvas = make("canvas", card, { tabIndex: 0 }), gl = canvas.getContext("webgl2", { alpha: false, preserveDrawingBuffer: true, antialias: true });
-  canvas.setAttribute("role", "application");
-  canvas.setAttribute("aria-label", "The bent body in 3-D: arrows turn it, with shift they move it, plus and minus zoom, F shows all");
-  if (!gl) {
-    card.replaceChildren("This browser has no WebGL 2, so there is no 3-D view of the bent body.");
-    return;
-  }
-  const { program, places } = newProgram(gl, BENT_SHADER, FACE_SHADER), bind = loadBody(gl, body), camera = newCamera();
+  const view = meshView(card, "The bent body", box, [BENT_SHADER, FACE_SHADER]);
+  if (!view) return;
+  const { gl, places, canvas } = view, bind = loadMesh(gl, body.faces, [body.at, ...body.moved]);
   const key = make("div", card, { className: "key" });
-  make("span", key, { textContent: "0 mm" });
+  make("span", key, { textContent: "moved by 0 mm" });
   const ramp = make("canvas", key, { width: 160, height: 12 }), high = make("span", key);
   ramp.setAttribute("aria-hidden", "true");
   drawKey(ramp, part => rampAt(part));
-  const fitting = TIMES.filter(times => times * Math.max(...most) <= AT_FIRST * size), first = Math.max(fitting.length - 1, 1);
-  const state = { times: TIMES[first], waiting: 0 };
-  const draw = () => {
-    state.waiting = 0;
-    const ratio = window.devicePixelRatio || 1, shape = Number(choice.value);
-    [canvas.width, canvas.height] = [canvas.clientWidth, canvas.clientHeight].map(length => Math.round(length * ratio));
-    const aspect = canvas.width / canvas.height;
-    if (camera.fitted) fitCamera(camera, box, aspect);
-    const { right, back } = axesOf(camera), paper = getComputedStyle(canvas).backgroundColor.match(/\d+/g).slice(0, 3).map(v => v / 255);
+  const fitting = TIMES.filter(times => times * Math.max(...most) <= AT_FIRST * diagonal(box)), first = Math.max(fitting.length - 1, 1);
+  let exaggeration = TIMES[first];
+  view.draw = () => {
+    const shape = Number(choice.value);
     high.textContent = `${most[shape].toFixed(2)} mm`;
-    gl.viewport(0, 0, canvas.width, canvas.height);
-    gl.enable(gl.DEPTH_TEST);
-    gl.clearColor(...paper, 1);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    gl.useProgram(program);
     bind(0, 0);
     bind(1, shape + 1);
-    gl.uniformMatrix4fv(places.camera, false, matrixOf(camera, aspect, 2 * size + Math.hypot(...camera.target.map((v, i) => v - (box[0][i] + box[1][i]) / 2))));
-    gl.uniform3fv(places.light, [0, 1, 2].map(i => 0.78 * back[i] - 0.38 * right[i] + (i > 1 ? 0.4 : 0)));
     gl.uniform3fv(places.ramp, RAMP.flat().map(v => v / 255));
-    gl.uniform1f(places.times, state.times);
+    gl.uniform1f(places.times, exaggeration);
     gl.uniform1f(places.most, Math.max(most[shape], 1e-9));
     gl.drawElements(gl.TRIANGLES, body.faces.length, gl.UNSIGNED_INT, 0);
     canvas.dataset.ready = body.faces.length / 3;
   };
-  const redraw = () => { state.waiting ||= requestAnimationFrame(draw); };
-  steerCamera(canvas, camera, redraw);
-  choice.onchange = redraw;
+  choice.onchange = view.redraw;
   const labels = TIMES.map(times => times ? `moved ${times} ×` : "as it was meant");
-  slide(card, labels, first, "Exaggeration of the movement", at => { state.times = TIMES[at]; redraw(); });
-  make("p", card, { className: "lead", textContent: "Drag: turn · shift or right button: move · wheel: zoom · double click: show all." });
-  window.addEventListener("resize", redraw);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-  redraw();
+  slide(card, labels, first, "Exaggeration of the movement", at => { exaggeration = TIMES[at]; view.redraw(); });
+  steering(card);
+  view.redraw();
 }
 
 document.querySelectorAll(".bent").forEach(showBent);

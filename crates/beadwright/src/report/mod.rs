@@ -8,7 +8,7 @@
 //! | [`rows`] | totals as people read them |
 //! | `words` | what the terms of the figures mean |
 //! | [`svg`] | one layer as a standalone picture |
-//! | [`bent`] | a body that bends, for a page |
+//! | [`bent`], [`coloured`] | a body that bends, and surfaces in several colours, for a page |
 //! | [`sheet`], [`plot`], [`sketch`] | other pages: height fields side by side, tables, curves, pictures of steps |
 //! | `colours` | the palette for styles and scripts |
 //! | [`angles`] | plots over the raster angle |
@@ -21,11 +21,12 @@
 //! | `layers.js`, `layout.js`, `lie.js`, `heat.js`, `ramp.js`, `colour.js` | reading layers, those of the page, where they lie, height fields, ramps of colours, what beads are coloured by |
 //! | `picture.js`, `pick.js`, `timeline.js`, `page.js` | a layer from above, the pass pointed out, the build in time, the controls |
 //! | `camera.js`, `steer.js`, `strands.js`, `shaders.js`, `scene.js`, `pace.js` | beads in 3-D (WebGL 2): camera and its handling, points, programs, buffers, how much is drawn |
-//! | `solid.js`, `twins.js`, `bent.js` | the part in 3-D on the report; on other pages strategies side by side, and a body that bends |
+//! | `solid.js`, `twins.js`, `mesh.js`, `bent.js`, `coloured.js` | the part in 3-D on the report; on other pages strategies side by side, and surfaces that bend or have several colours |
 
 pub mod angles;
 pub mod bead_window;
 pub mod bent;
+pub mod coloured;
 mod colours;
 pub mod encode;
 mod lie;

@@ -1,8 +1,10 @@
 //! A page of pictures and tables: `compare.html`, `simulate.html` and the pages of `reproduce`.
 
 use super::bent::Bent;
+use super::coloured::Coloured;
 use super::{colours, encode, escape, words};
 use crate::deposit::Picture;
+use crate::palette::hex;
 use crate::template;
 
 /// A page that is put together piece by piece. All text is escaped.
@@ -81,6 +83,17 @@ impl Sheet {
         ))
     }
 
+    /// Surfaces in 3-D, each in a colour that the key below them names.
+    pub fn coloured(&mut self, name: &str, surfaces: &Coloured) -> &mut Self {
+        let key = surfaces.key.iter().map(|(name, colour)| format!("[{},\"{}\"]", json(name), hex(*colour)));
+        self.push(&format!(
+            "<div class=\"card coloured\"><script type=\"application/json\">{{\"name\":{},\"key\":[{}],\"surface\":\"{}\"}}</script></div>",
+            json(name),
+            key.collect::<Vec<_>>().join(","),
+            surfaces.encoded()
+        ))
+    }
+
     /// Finished SVGs side by side, each with what it shows.
     pub fn svgs(&mut self, pictures: &[(String, String)]) -> &mut Self {
         let figure = |(caption, svg): &(String, String)| {
@@ -144,11 +157,17 @@ impl Sheet {
             include_str!("scene.js"),
             include_str!("pace.js"),
         ];
-        let (beads, bent) = (self.has("beads"), self.has("bent"));
-        let deep = deep.iter().filter(|_| beads || bent);
-        let twins = beads.then_some(include_str!("twins.js"));
-        let bent = bent.then_some([include_str!("ramp.js"), include_str!("bent.js")]);
-        flat.iter().chain(deep).copied().chain(twins).chain(bent.into_iter().flatten()).collect()
+        let (beads, bent, coloured) = (self.has("beads"), self.has("bent"), self.has("coloured"));
+        let own = [
+            (beads, include_str!("twins.js")),
+            (bent || coloured, include_str!("mesh.js")),
+            (bent, include_str!("ramp.js")),
+            (bent, include_str!("bent.js")),
+            (coloured, include_str!("coloured.js")),
+        ];
+        let deep = deep.iter().filter(|_| own.iter().any(|(is_there, _)| *is_there));
+        let own = own.iter().filter(|(is_there, _)| *is_there).map(|(_, script)| script);
+        flat.iter().chain(deep).chain(own).copied().collect()
     }
 
     /// Whether it has a card of this class.

@@ -4,10 +4,8 @@
 use crate::common;
 
 use beadwright::as_built::as_built;
-use beadwright::chart::Bound;
-use beadwright::directions::{Found, Outcome, Settings, divisions, tried};
 use beadwright::layer::Layer;
-use beadwright::model::{Import, Mesh, Object, Part, RepairReport, solid::Solid};
+use beadwright::model::{Mesh, Object, Part, solid::Solid};
 use beadwright::plan::{self, Plan, PlanError};
 use beadwright::planar::{Polygon, Ring};
 use beadwright::profile::{Body, Profile};
@@ -15,10 +13,9 @@ use beadwright::program::Instruction;
 use beadwright::task::Task;
 use beadwright::warning::WarningKind;
 use beadwright::{check, example, plan_file};
-use common::profile;
+use common::{imported, profile};
 use glam::{DMat3, DVec2, DVec3};
 use std::convert::Infallible;
-use std::f64::consts::FRAC_PI_2;
 
 fn with_bodies(bodies: &str) -> Profile {
     let mut profile = profile("cmt-al2319-kuka");
@@ -40,18 +37,6 @@ fn block(low: DVec3, high: DVec3) -> Solid {
     let corners = [(low.x, low.y), (high.x, low.y), (high.x, high.y), (low.x, high.y)];
     let outline = Polygon::simple(Ring::new(corners.map(|(x, y)| DVec2::new(x, y)).to_vec()));
     Solid::loft(&outline, &[low.z, high.z], |p, _| p)
-}
-
-fn imported(mesh: Mesh) -> Part {
-    Part::Mesh(Import {
-        mesh,
-        repair: RepairReport::default(),
-        format: "test",
-        units: None,
-        objects: Vec::new(),
-        notes: Vec::new(),
-        milled: None,
-    })
 }
 
 /// A plate, a block that reaches into it, and one that stands on it.
@@ -183,51 +168,6 @@ fn a_forked_tube_is_welded_whole_at_any_angle() {
             let body = &profile.layers.bodies[layer.body];
             let outside = |p: &DVec3| body.within.iter().any(|bound| bound.height(*p) < -3.0);
             assert_eq!(beads(layer, &profile).find(outside), None, "{degrees}: layer {}", layer.index + 1);
-        }
-    }
-}
-
-/// A trunk with two branches, found and welded: the first layer of a branch lies on the trunk, and all beads in their bodies.
-#[test]
-fn bars_that_branch_are_welded_on_the_bar_that_carries_them() {
-    let settings = Settings { lean: 45.0, tilt: 90.0, bead: 7.54 };
-    for turned in [0.0_f64, 64.0] {
-        let bar = |radius: f64, length: f64, turn: DMat3, from: DVec3| {
-            let corner = |k: i32| DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / 64.0) * radius;
-            let outline = Polygon::simple(Ring::new((0..64).map(corner).collect()));
-            let Solid { vertices, triangles } = Solid::extrude(&outline, 0.0, length);
-            Mesh::from_triangles(vertices.into_iter().map(|p| from + turn * p).collect(), triangles).0
-        };
-        let branch = |lean: f64, around: f64| {
-            DMat3::from_rotation_z((around + turned).to_radians()) * DMat3::from_rotation_y(lean.to_radians())
-        };
-        let mut mesh = bar(18.0, 130.0, DMat3::IDENTITY, DVec3::ZERO);
-        // A little into the trunk, so that they are one.
-        let outside: Bound = "cylinder:axis=z,radius=17.5,side=outer".parse().unwrap();
-        for (turn, height) in [(branch(90.0, 0.0), 60.0), (branch(60.0, 150.0), 80.0)] {
-            mesh.add(outside.part_of(&bar(12.0, 90.0, turn, DVec3::Z * height)));
-        }
-        let found = divisions(&mesh, settings, &Task::new()).unwrap();
-        let mut profile = profile("cmt-al2319-kuka");
-        profile.layers.bodies = Body::of_division("tree", &found[0]);
-        assert_eq!(profile.layers.bodies.len(), 3, "{turned}: {:?}", profile.layers.bodies);
-        // As it is written and read.
-        profile.layers.bodies = Body::read(&Body::write(&profile.layers.bodies)).unwrap();
-        let plan = planned(&mesh, &profile).unwrap();
-        assert!(plan.summary.forbidden.is_empty(), "{turned}: {:?}", plan.summary.forbidden);
-        let metrics = &plan.summary.metrics;
-        let (laid, part) = (metrics.deposited_volume_mm3, mesh.volume());
-        assert!((laid / part - 1.0).abs() < 0.03, "{turned}: {laid} of {part}");
-        for layer in &plan.layers {
-            let body = &profile.layers.bodies[layer.body];
-            let outside = |p: &DVec3| body.within.iter().any(|bound| bound.height(*p) < -3.0);
-            assert_eq!(beads(layer, &profile).find(outside), None, "{turned}: layer {}", layer.index + 1);
-        }
-        for branch in [1, 2] {
-            let first = plan.layers.iter().find(|layer| layer.body == branch && !layer.passes.is_empty()).unwrap();
-            let away = |p: DVec3| p.truncate().length();
-            let [near, far] = [f64::min, f64::max].map(|of| beads(first, &profile).map(away).reduce(of).unwrap());
-            assert!(17.9 < near && far < 18.1 + first.height, "{turned}: {near} to {far} mm from the trunk's axis");
         }
     }
 }
@@ -503,75 +443,6 @@ fn a_strategy_named_by_a_body_is_kept() {
         let chosen = plan::choice::choose(&part, &with_bodies(&text), false, &Task::new()).unwrap().profile;
         let strategy = |k: usize| chosen.layers.bodies[k].strategy.map(|strategy| strategy.to_string());
         assert_eq!((strategy(0).as_deref(), strategy(1).as_deref()), (Some(expected), Some("wall")));
-    }
-}
-
-/// From a mesh alone: a hub with blades and a bent tube are planned in the directions that are found, as by the bodies that come with
-/// the examples.
-#[test]
-fn directions_that_are_found_are_planned() {
-    for (name, layers) in [("hub", 50), ("elbow", 125)] {
-        let mesh = example::find(name).unwrap().mesh();
-        let settings = Settings { lean: 45.0, tilt: 90.0, bead: 7.0 };
-        let found = divisions(&mesh, settings, &Task::new()).unwrap();
-        let text = Body::write(&Body::of_division(name, &found[0]));
-        let plan = planned(&mesh, &with_bodies(&text)).unwrap();
-        assert_eq!(plan.summary.forbidden, [] as [String; 0], "{name}");
-        assert!(plan.summary.metrics.layers.abs_diff(layers) <= 1, "{name}: {}", plan.summary.metrics.layers);
-        assert!(plan.summary.metrics.coverage() > 0.99, "{name}: {}", plan.summary.metrics.coverage());
-    }
-}
-
-/// What is offered first can be welded, and what cannot says why: a post with two arms, and a bridge on two posts, which planes
-/// cannot divide.
-#[test]
-fn directions_that_are_offered_first_can_be_welded() {
-    let profile = profile("cmt-steel-abb");
-    let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
-    // A sheet 40 mm thick with an outline in x and z, mm, turned about z.
-    let found = |outline: &[[f64; 2]], degrees: f64| -> (Mesh, Found) {
-        let turn = DMat3::from_rotation_z(degrees.to_radians()) * DMat3::from_rotation_x(FRAC_PI_2);
-        let outline = Polygon::simple(Ring::new(outline.iter().copied().map(DVec2::from).collect()));
-        let Solid { vertices, triangles } = Solid::extrude(&outline, 0.0, 40.0);
-        let mesh = Mesh::from_triangles(vertices.into_iter().map(|p| turn * p).collect(), triangles).0;
-        let found = tried("post", &imported(mesh.clone()), &profile, false, settings, &Task::new()).unwrap();
-        (mesh, found)
-    };
-    let [left, right] = [
-        [[-20.0, 90.0], [-20.0, 65.0], [-80.0, 65.0], [-80.0, 40.0], [-20.0, 40.0]],
-        [[20.0, 60.0], [90.0, 60.0], [90.0, 90.0], [20.0, 90.0], [0.0, 90.0]],
-    ];
-    let arms = [&[[-20.0, 0.0], [20.0, 0.0]], &right[..], &left].concat();
-    for degrees in [0.0, 37.0] {
-        let (mesh, Found { divisions, tilted, .. }) = found(&arms, degrees);
-        let (level, tried) = divisions.split_last().unwrap();
-        assert!(tried[0].is_planned() && tried[0].bodies.len() == 3, "{degrees}°: {:?}", tried[0]);
-        assert!(tried.is_sorted_by_key(|tried| !tried.is_planned()) && tilted.is_none(), "{degrees}°");
-        assert_eq!(level.outcome, Outcome::Untried, "{degrees}°: not needed");
-        let mut own = profile.clone();
-        own.layers.bodies = Body::read(&Body::write(&tried[0].bodies)).unwrap();
-        let plan = planned(&mesh, &own).unwrap();
-        assert_eq!(plan.summary.forbidden, [] as [String; 0], "{degrees}°");
-        let Outcome::Planned(metrics) = &tried[0].outcome else { unreachable!() };
-        assert_eq!(**metrics, plan.summary.metrics, "{degrees}°: its figures are those of its plan");
-        assert!(metrics.coverage() > 0.99, "{degrees}°: {}", metrics.coverage());
-    }
-    let posts = [
-        [-60.0, 0.0],
-        [-30.0, 0.0],
-        [-30.0, 60.0],
-        [30.0, 60.0],
-        [30.0, 0.0],
-        [60.0, 0.0],
-        [60.0, 90.0],
-        [-60.0, 90.0],
-    ];
-    let (_, Found { divisions, level, .. }) = found(&posts, 0.0);
-    assert!((level - 60.0 * 40.0).abs() < 1.0, "{level}");
-    for tried in divisions {
-        let Outcome::Refused { reason, hangs } = tried.outcome else { panic!("{:?}", tried.bodies) };
-        assert!(reason.ends_with('.') && reason.contains("mm"), "{reason}");
-        assert!(hangs || !tried.bodies[0].chart.is_level() || tried.bodies.len() > 1, "{reason}");
     }
 }
 

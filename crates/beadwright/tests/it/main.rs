@@ -33,6 +33,7 @@ mod definition;
 mod deposit;
 mod deposit_quick;
 mod deviation;
+mod directions;
 mod dialect_pages;
 mod dialects;
 mod distortion;

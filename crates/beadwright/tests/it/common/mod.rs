@@ -4,6 +4,7 @@
 use beadwright::Mesh;
 use beadwright::dialect::reading::{ArcCodes, Options, ReadError, ReadProgram, read};
 use beadwright::example;
+use beadwright::model::{Import, Part, RepairReport};
 use beadwright::plan::{self, Plan, PlanError};
 use beadwright::profile::Profile;
 use beadwright::task::Task;
@@ -144,4 +145,17 @@ pub(crate) fn tube(radius: f64, wall: f64, height: f64, lean: f64) -> Mesh {
     };
     let triangles = [(0, 1), (1, 2), (2, 3), (3, 0)].into_iter().flat_map(side).collect();
     Mesh::from_triangles(vertices, triangles).0
+}
+
+/// A mesh as a part that needed no repair.
+pub(crate) fn imported(mesh: Mesh) -> Part {
+    Part::Mesh(Import {
+        mesh,
+        repair: RepairReport::default(),
+        format: "test",
+        units: None,
+        objects: Vec::new(),
+        notes: Vec::new(),
+        milled: None,
+    })
 }

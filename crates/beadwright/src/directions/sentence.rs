@@ -1,0 +1,40 @@
+//! Divisions in sentences.
+
+use super::{Division, Outcome, Tried};
+use crate::chart::Chart;
+
+impl Tried {
+    /// What the part is divided into, without a full stop.
+    pub fn described(&self) -> String {
+        let Division { pieces, hanging, tilt, lean } = &self.division;
+        let bodies = match &pieces[..] {
+            [_] if self.is_level() => return "level layers".to_owned(),
+            [piece] => match &piece.chart {
+                Chart::Guide(guide) => format!("1 body along its middle line, {:.0} mm long", guide.length()),
+                chart => format!("1 body on {chart}"),
+            },
+            pieces => format!("{} bodies", pieces.len()),
+        };
+        let stock =
+            if self.needs_stock() { ", on metal that is there already (the hub, turned from bar stock)" } else { "" };
+        let leans = lean.map_or(String::new(), |lean| {
+            format!(
+                ", walls that lean by up to {lean:.0}° (square to them, layers would begin with no room for a bead)"
+            )
+        });
+        format!("{bodies}{stock}: {:.1} cm² overhang, layers at up to {tilt:.0}° from level{leans}", hanging / 100.0)
+    }
+
+    /// What came of planning it, as a sentence; `None` if it was not planned.
+    pub fn verdict(&self) -> Option<String> {
+        match &self.outcome {
+            Outcome::Untried => None,
+            Outcome::Planned(metrics) => {
+                let price = metrics.cost.map_or(String::new(), |cost| format!(", {cost:.0} {}", metrics.currency));
+                let hours = metrics.total_time_s / 3600.0;
+                Some(format!("It can be welded: {hours:.2} h, {:.2} kg of wire{price}.", metrics.wire_mass_kg))
+            }
+            Outcome::Refused { reason, .. } => Some(format!("It cannot be welded: {reason}")),
+        }
+    }
+}
