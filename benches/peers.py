@@ -42,13 +42,16 @@ PLAIN = "plate_holes openthruster_prop_cw rear_case bunny_closed bunny_1114k.stl
     "spider_ascii iris_quad_duplicates".split()
 
 
-def plain_cases():
-    """The parts of --plain."""
+def plain_cases(wanted):
+    """The parts of --plain that are wanted."""
     for name in PLAIN:
-        file = name if "." in name else f"{name}.stl"
+        file, name = name if "." in name else f"{name}.stl", name.removesuffix(".stl.gz")
+        if wanted and name not in wanted:
+            continue
         # In another process, as below.
         with concurrent.futures.ProcessPoolExecutor(1) as other:
-            yield name.removesuffix(".stl.gz"), file, other.submit(plain_scale, file).result(), PLAIN_BEAD, 1
+            scale = other.submit(plain_scale, file).result()
+        yield name, file, scale, PLAIN_BEAD, 1
 
 
 def plain_scale(file):
@@ -177,6 +180,8 @@ def main():
     arguments.add_argument("--judged", action="store_true", help="our plans with the deposit model on, as by default")
     arguments.add_argument("--alone", action="store_true", help="leave the peers out")
     given = arguments.parse_args()
+    if given.plain and (given.welder or given.judged):
+        arguments.error("--plain plans without flags: leave --welder and --judged out")
     if not given.binary:
         subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "beadwright-cli"], cwd=ROOT, check=True)
     target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
@@ -188,9 +193,9 @@ def main():
                 peers[f"{name}, {setting}"] = lambda *case, of=of, equal=setting == "equal": of(*case, equal)
     rows = []
     print(f"{'case':<26}" + "".join(f"{name:>22}" for name in [*peers, "beadwright"]) + "   (CPU s, peak MB)")
-    for name, file, scale, bead, perimeters in plain_cases() if given.plain else CASES:
-        if given.cases and name not in given.cases.split(","):
-            continue
+    wanted = given.cases.split(",") if given.cases else []
+    cases = plain_cases(wanted) if given.plain else [case for case in CASES if not wanted or case[0] in wanted]
+    for name, file, scale, bead, perimeters in cases:
         with tempfile.TemporaryDirectory() as folder, concurrent.futures.ProcessPoolExecutor(1) as other:
             work = pathlib.Path(folder)
             # In another process: the memory of this one counts as that of what it starts.

@@ -91,9 +91,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         tried(&name, &part, &profile, false, settings, &task)?
     };
     bar.finish_and_clear();
-    if let (Some(page), Some(mesh)) = (&arguments.page, part.mesh()) {
-        file::write(page, page::page(&name, mesh, &found).html().as_bytes())?;
-    }
     let model = &arguments.model.model;
     let mut out = say::done(arguments.output.is_none());
     let lean = arguments.lean;
@@ -121,6 +118,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let Some(Tried { bodies, .. }) = offered.get(arguments.choice as usize - 1) else {
         anyhow::bail!("--choice {}: there are {} to choose from", arguments.choice, offered.len());
     };
+    if let (Some(page), Some(mesh)) = (&arguments.page, part.mesh()) {
+        file::write(page, page::page(&name, mesh, &found).html().as_bytes())?;
+        writeln!(out, "{}: the divisions in 3-D.", page.display())?;
+    }
     let text = Body::write(bodies);
     match &arguments.output {
         Some(path) => {
@@ -136,9 +137,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             writeln!(out, "{}: number {}. Plan the part with --bodies {0}{placed}.", path.display(), arguments.choice)?;
         }
         None => write!(std::io::stdout(), "{text}")?,
-    }
-    if let Some(page) = &arguments.page {
-        writeln!(out, "{} shows them.", page.display())?;
     }
     Ok(())
 }

@@ -39,6 +39,8 @@ pub enum Outcome {
         reason: String,
         /// Whether passes have nothing below them, so that a preform may help.
         hangs: bool,
+        /// Number of other orders of the bodies that were tried in vain, since the torch would hit a finished body.
+        orders: usize,
     },
     /// It was not planned.
     Untried,
@@ -205,9 +207,9 @@ struct Trials<'a> {
 impl Trials<'_> {
     /// Plans a division, and, where the torch would hit a body, in other orders of its pieces.
     fn of(&self, division: Division) -> Result<Tried, Cancelled> {
-        let (first, blocked) = self.in_order(division)?;
+        let (mut first, blocked) = self.planned(division)?;
         let mut seen = vec![first.division.pieces.clone()];
-        let mut open: VecDeque<_> = blocked.iter().flat_map(|blocked| reordered(&first.division, *blocked)).collect();
+        let mut open: VecDeque<_> = orders(&first.division, &blocked).collect();
         while seen.len() <= ORDERS
             && let Some(division) = open.pop_front()
         {
@@ -215,21 +217,24 @@ impl Trials<'_> {
                 continue;
             }
             seen.push(division.pieces.clone());
-            let (other, blocked) = self.in_order(division)?;
+            let (other, blocked) = self.planned(division)?;
             if other.is_planned() {
                 return Ok(other);
             }
-            open.extend(blocked.iter().flat_map(|blocked| reordered(&other.division, *blocked)));
+            open.extend(orders(&other.division, &blocked));
+        }
+        if let Outcome::Refused { orders, .. } = &mut first.outcome {
+            *orders = seen.len() - 1;
         }
         Ok(first)
     }
 
-    /// Plans a division in the order of its pieces; and which of them block which there.
-    fn in_order(&self, division: Division) -> Result<(Tried, Vec<Blocked>), Cancelled> {
+    /// Plans a division in the order of its pieces; and which of them block which, if nothing else forbids the plan.
+    fn planned(&self, division: Division) -> Result<(Tried, Vec<Blocked>), Cancelled> {
         let untried = Tried::of(self.name, division);
         let mut profile = self.profile.clone();
         profile.layers.bodies.clone_from(&untried.bodies);
-        let refused = |reason: String| Outcome::Refused { reason, hangs: false };
+        let refused = |reason: String| Outcome::Refused { reason, hangs: false, orders: 0 };
         let posts = profile.posts.iter().filter(|post| !own::is_folder(post));
         let mut errors = posts.filter_map(|post| dialect::write(post, &NO_LAYERS, &profile.job(self.name)).err());
         if let Some(error) = errors.next() {
@@ -237,13 +242,15 @@ impl Trials<'_> {
         }
         let Choice { profile, .. } = choose(self.part, &profile, self.kept, self.task)?;
         let (outcome, blocked) = match plan_into(self.name, self.part, &profile, self.task, &mut Nowhere) {
-            Ok(Summary { metrics, warnings, forbidden, blocked, .. }) => match forbidden.into_iter().next() {
-                Some(reason) => {
-                    let hangs = warnings.summaries().any(|warning| warning.kind == WarningKind::InTheAir);
-                    (Outcome::Refused { reason, hangs }, blocked)
+            Ok(Summary { metrics, warnings, forbidden, blocked, .. }) => {
+                let any = |is: &dyn Fn(WarningKind) -> bool| warnings.summaries().any(|warning| is(warning.kind));
+                let blocked = if any(&WarningKind::forbids) { Vec::new() } else { blocked };
+                let hangs = any(&|kind| kind == WarningKind::InTheAir);
+                match forbidden.into_iter().next() {
+                    Some(reason) => (Outcome::Refused { reason, hangs, orders: 0 }, blocked),
+                    None => (Outcome::Planned(Box::new(metrics)), Vec::new()),
                 }
-                None => (Outcome::Planned(Box::new(metrics)), Vec::new()),
-            },
+            }
             Err(PlanError::Cancelled(cancelled)) => return Err(cancelled),
             Err(error) => (refused(error.to_string()), Vec::new()),
         };
@@ -251,9 +258,11 @@ impl Trials<'_> {
     }
 }
 
-/// Two orders in which a piece is welded before the one that blocks it: it comes just before that, or that just after it.
-fn reordered(division: &Division, Blocked { body, by }: Blocked) -> [Division; 2] {
-    [(body, by), (by, body)].map(|(from, to)| {
+/// For each piece that is blocked, two orders in which it is welded before the one in its way: either it moves to just before
+/// that, or that to just after it. The first piece, on which the others stand, stays the first.
+fn orders(division: &Division, blocked: &[Blocked]) -> impl Iterator<Item = Division> {
+    let movable = blocked.iter().filter(|blocked| blocked.by > 0);
+    movable.flat_map(|&Blocked { body, by }| [(body, by), (by, body)]).map(|(from, to)| {
         let mut division = division.clone();
         let piece = division.pieces.remove(from);
         division.pieces.insert(to, piece);

@@ -1,26 +1,28 @@
 //! The page of the divisions of a part: each in 3-D with its bodies in colours, and the figures of all.
 
 use super::{Found, Outcome, Tried};
-use crate::chart::Chart;
+use super::sentence::layers;
+use crate::chart::{Bound, Chart, Cylinder};
 use crate::model::Mesh;
 use crate::number::fixed;
 use crate::palette;
 use crate::profile::Body;
 use crate::report::coloured::Coloured;
 use crate::report::sheet::{Row, Sheet};
-use glam::DVec3;
 
 /// The page; `mesh` is the part that was divided.
 pub fn page(name: &str, mesh: &Mesh, found: &Found) -> Sheet {
-    let tried = found.divisions.iter().any(|tried| tried.outcome != Outcome::Untried);
-    let how = if tried {
-        "Each division was planned for trial; what can be welded comes first, the cheapest at the top"
+    let any = |is: fn(&Tried) -> bool| found.divisions.iter().any(is);
+    let how = if any(Tried::is_planned) {
+        "Each division was planned for trial: what can be welded comes first, the best by price and overhang at the top"
+    } else if any(|tried| tried.outcome != Outcome::Untried) {
+        "Each division was planned for trial, and none can be welded as it is"
     } else {
         "The divisions as they were found, not planned for trial"
     };
     let lead = format!("{how}. In level layers, {:.1} cm² of the part overhang.", found.level / 100.0);
     let mut sheet = Sheet::new(&format!("Directions: {name}"), &lead);
-    let head = ["division", "bodies", "overhang, cm²", "from level, °", "time, h", "wire, kg", "price", "covered, %"];
+    let head = ["division", "bodies", "overhang, cm²", "steepest layers, °", "result", "time, h", "wire, kg", "price", "covered, %"];
     let offered: Vec<&Tried> = found.offered().collect();
     let rows: Vec<Row> = offered.iter().enumerate().map(|(k, tried)| row(k + 1, tried)).collect();
     sheet.table(&head, &rows);
@@ -36,43 +38,43 @@ pub fn page(name: &str, mesh: &Mesh, found: &Found) -> Sheet {
 
 /// The figures of a division; those of the first are marked if it can be welded.
 fn row(number: usize, tried: &Tried) -> Row {
-    let planned = match &tried.outcome {
-        Outcome::Planned(metrics) => [
-            fixed(metrics.total_time_s / 3600.0, 2),
-            fixed(metrics.wire_mass_kg, 2),
-            metrics.cost.map_or("–".to_owned(), |cost| format!("{cost:.0} {}", metrics.currency)),
-            fixed(100.0 * metrics.coverage(), 1),
-        ],
-        Outcome::Refused { .. } => ["cannot be welded", "–", "–", "–"].map(str::to_owned),
-        Outcome::Untried => ["not planned", "–", "–", "–"].map(str::to_owned),
+    let none = ["–"; 4].map(str::to_owned);
+    let (result, figures) = match &tried.outcome {
+        Outcome::Planned(metrics) => {
+            let price = metrics.cost.map_or("–".to_owned(), |cost| format!("{cost:.0} {}", metrics.currency));
+            let [hours, mass] = [metrics.total_time_s / 3600.0, metrics.wire_mass_kg].map(|figure| fixed(figure, 2));
+            ("can be welded", [hours, mass, price, fixed(100.0 * metrics.coverage(), 1)])
+        }
+        Outcome::Refused { .. } => ("cannot be welded", none),
+        Outcome::Untried => ("not planned", none),
     };
     let found = [
         number.to_string(),
         tried.bodies.len().to_string(),
         fixed(tried.division.hanging / 100.0, 1),
         fixed(tried.division.tilt, 0),
+        result.to_owned(),
     ];
     let is_best = number == 1 && tried.is_planned();
-    found.into_iter().chain(planned).map(|text| (text, is_best)).collect()
+    found.into_iter().chain(figures).map(|text| (text, is_best)).collect()
 }
 
-/// The part with each body in a colour of its own.
+/// The part with each body in a colour of its own, and grey what must be there already.
 fn coloured(mesh: &Mesh, bodies: &[Body]) -> Coloured {
     let mut surfaces = Coloured::default();
     for (k, body) in bodies.iter().enumerate() {
+        let whole = body.of_mesh(mesh);
         let name = format!("{}: {}", body.name, layers(&body.chart));
-        surfaces.add(&name, &body.of_mesh(mesh), palette::body(k));
+        let Chart::Cylinder(around) = &body.chart else {
+            surfaces.add(&name, &whole, palette::body(k));
+            continue;
+        };
+        // Below its first layer lies metal of other bodies, or stock.
+        surfaces.add(&name, &Bound::Cylinder(*around).part_of(&whole), palette::body(k));
+        if body.on_stock {
+            let inside = Cylinder { side: around.side.other(), ..*around };
+            surfaces.add("already there", &Bound::Cylinder(inside).part_of(&whole), palette::missing(false));
+        }
     }
     surfaces
-}
-
-/// How layers lie, in a few words.
-fn layers(chart: &Chart) -> String {
-    match chart {
-        chart if chart.is_level() => "level layers".to_owned(),
-        Chart::Plane(plane) => format!("flat layers, {:.0}° from level", plane.up.angle_between(DVec3::Z).to_degrees()),
-        Chart::Cylinder(around) => format!("layers around a cylinder of {:.1} mm radius", around.radius),
-        Chart::Guide(_) => "layers along its middle line".to_owned(),
-        chart => format!("layers on {chart}"),
-    }
 }

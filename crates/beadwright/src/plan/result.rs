@@ -48,7 +48,8 @@ pub struct Summary {
     pub notes: Vec<String>,
     /// Why its programs should not be written, as sentences; empty for a plan that can be welded.
     pub forbidden: Vec<String>,
-    /// Bodies for which the torch has no room beside others that are welded before them; `forbidden` says so, too.
+    /// Bodies for which the torch has no room beside others that are welded before them; `forbidden` says so, too. Neither parts
+    /// welded one after another nor a part that is there already are among them.
     #[serde(default)]
     pub blocked: Vec<Blocked>,
 }
@@ -58,7 +59,7 @@ pub struct Summary {
 pub struct Blocked {
     /// Index of the body in `layers.bodies`.
     pub body: usize,
-    /// Index of the finished one.
+    /// Index of the body in its way, in `layers.bodies`.
     pub by: usize,
 }
 

@@ -4,7 +4,7 @@
 //! the nodes are (f32, x y z); the corners of the triangles (u32); the colours of the nodes (u8, red green blue).
 
 use super::encode::deflated;
-use crate::model::Mesh;
+use crate::model::{Mesh, cut::compact};
 use crate::palette::Rgb;
 use glam::DVec3;
 
@@ -21,8 +21,9 @@ impl Coloured {
     /// Adds a surface, by this name in the key.
     pub fn add(&mut self, name: &str, mesh: &Mesh, colour: Rgb) {
         let first = self.nodes.len() as u32;
-        self.nodes.extend(&mesh.vertices);
-        self.triangles.extend(mesh.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+        let (nodes, triangles) = compact(&mesh.vertices, &mesh.triangles);
+        self.nodes.extend(nodes);
+        self.triangles.extend(triangles.iter().map(|corners| corners.map(|corner| corner + first)));
         self.colours.resize(self.nodes.len(), colour);
         self.key.push((name.to_owned(), colour));
     }

@@ -33,6 +33,14 @@ pub enum Side {
 }
 
 impl Side {
+    /// The opposite one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Outer => Self::Inner,
+            Self::Inner => Self::Outer,
+        }
+    }
+
     fn sign(self) -> f64 {
         match self {
             Self::Outer => 1.0,

@@ -246,18 +246,18 @@ impl Tree {
             self.lean = self.lean.max(lean);
         }
         let plane = |up: DVec3| Chart::Plane(Plane { origin: start, up }.rounded());
+        // Cylinders are endless: behind the carrier, this one would go on.
+        let half = Plane { origin: carrier.tube.through + carrier.tube.axis * other, up: away };
+        let half = Bound::Plane(half.rounded());
         let (side, chart, last) = match layers {
             Layers::Carriers => {
                 // A little into the carrier, so that they are one.
-                within.push(Bound::Cylinder(carrier.tube.surface(Side::Outer, -THICKER)));
+                within.extend([Bound::Cylinder(carrier.tube.surface(Side::Outer, -THICKER)), half]);
                 self.pieces[carrier.piece].also.push(within);
                 self.grown.push(Grown { tube, up, carried: true, piece: carrier.piece });
                 return;
             }
-            Layers::Around => {
-                let half = Plane { origin: carrier.tube.through + carrier.tube.axis * other, up: away };
-                (away, carrier.tube.around(away), Bound::Plane(half.rounded()))
-            }
+            Layers::Around => (away, carrier.tube.around(away), half),
             Layers::Flat => (flat, plane(flat), carrier.tube.outside()),
             Layers::Square => (up, plane(up), carrier.tube.outside()),
         };

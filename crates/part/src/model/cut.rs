@@ -191,7 +191,7 @@ fn nested<'r>(rings: &'r [Vec<u32>], places: &dyn Fn(&[u32]) -> Vec<DVec2>) -> V
 }
 
 /// The vertices that triangles use, and the triangles with their new numbers.
-fn compact(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+pub fn compact(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut numbers = vec![None; vertices.len()];
     let mut kept = Vec::new();
     let mut number = |i: u32| {
