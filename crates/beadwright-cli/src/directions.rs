@@ -3,8 +3,7 @@
 
 use crate::{file, model, profile, progress, say};
 use anyhow::Context;
-use beadwright::chart::Chart;
-use beadwright::directions::{Division, Found, Outcome, Settings, Tried, tried, untried};
+use beadwright::directions::{Found, Outcome, Settings, Tried, tried, untried};
 use beadwright::profile::{Body, Profile};
 use beadwright::{Part, Task};
 use std::io::Write;
@@ -15,11 +14,11 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
     /// Largest angle between a wall and the direction in which it is built, degrees.
-    #[arg(long, value_name = "DEG", default_value_t = LEAN, value_parser = parse_lean)]
+    #[arg(long, value_name = "DEG", default_value_t = Settings::LEAN, value_parser = parse_lean)]
     lean: f64,
     /// Largest angle between a direction and the vertical, degrees: what the positioner can tilt, or the torch can lean.
     /// Beyond 90 only branches on branches go, in layers around the one that carries them.
-    #[arg(long, value_name = "DEG", default_value_t = TILT, value_parser = parse_tilt)]
+    #[arg(long, value_name = "DEG", default_value_t = Settings::TILT, value_parser = parse_tilt)]
     tilt: f64,
     /// List the divisions without planning each for trial, which takes as long as planning the part several times.
     #[arg(long)]
@@ -46,17 +45,12 @@ pub(crate) fn bodies(
         profile.layers.are_level() && profile.layers.bodies.is_empty(),
         "--directions auto: the profile says how layers lie (layers.chart, layers.bodies): leave that out."
     );
-    let settings = Settings { lean: LEAN, tilt: TILT, bead: profile.bead.width };
+    let settings = Settings::usual(profile.bead.width);
     let Found { divisions, .. } = tried(name, part, profile, kept, settings, task)?;
     let best = divisions.into_iter().next().with_context(|| name.to_owned())?;
-    let sentence = format!("Directions were found while planning (--directions auto): {}.", sentence(&best));
-    let bodies = if best.is_level() { Vec::new() } else { best.bodies };
-    Ok((bodies, sentence))
+    let sentence = format!("Directions were found while planning (--directions auto): {}.", best.about());
+    Ok((best.into_bodies(), sentence))
 }
-
-/// Largest angles of walls from the direction in which they are built, and of directions from the vertical, °.
-const LEAN: f64 = 45.0;
-const TILT: f64 = 90.0;
 
 fn parse_lean(text: &str) -> Result<f64, String> {
     degrees(text, 5.0..=80.0)
@@ -83,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         say::size(&import.mesh, &profile)?;
     }
     let part = Part::Mesh(import);
-    let Found { divisions, level, tilted } = if arguments.no_trial {
+    let found = if arguments.no_trial {
         untried(&name, &part, settings, &task)?
     } else {
         tried(&name, &part, &profile, false, settings, &task)?
@@ -92,13 +86,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let model = &arguments.model.model;
     let mut out = say::done(arguments.output.is_none());
     let lean = arguments.lean;
-    writeln!(out, "level layers: {:.1} cm² overhang by more than {lean}°", level / 100.0)?;
-    // Level layers are offered where nothing else is found, or nothing else can be welded.
-    let only = divisions.len() == 1;
-    let is_offered = |found: &Tried| only || !found.is_level() || found.is_planned();
-    let found: Vec<Tried> = divisions.into_iter().filter(is_offered).collect();
+    writeln!(out, "level layers: {:.1} cm² overhang by more than {lean}°", found.level / 100.0)?;
+    let (only, tilted) = (found.divisions.len() == 1, found.tilted.clone());
+    let found = found.offered();
     for (number, found) in found.iter().enumerate() {
-        writeln!(out, "{}. {}{}", number + 1, sentence(found), ending(found))?;
+        writeln!(out, "{}. {}{}", number + 1, found.about(), ending(found))?;
     }
     if only {
         writeln!(out, "No other direction avoids much of it.")?;
@@ -135,24 +127,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         None => write!(std::io::stdout(), "{text}")?,
     }
     Ok(())
-}
-
-fn sentence(found: &Tried) -> String {
-    let Division { pieces, hanging, tilt, lean } = &found.division;
-    let bodies = match &pieces[..] {
-        [_] if found.is_level() => return "level layers".to_owned(),
-        [piece] => match &piece.chart {
-            Chart::Guide(guide) => format!("1 body along its middle line, {:.0} mm long", guide.length()),
-            chart => format!("1 body on {chart}"),
-        },
-        pieces => format!("{} bodies", pieces.len()),
-    };
-    let stock =
-        if found.needs_stock() { ", on metal that is there already (the hub, turned from bar stock)" } else { "" };
-    let leans = lean.map_or(String::new(), |lean| {
-        format!(", walls that lean by up to {lean:.0}° (square to them, layers would begin with no room for a bead)")
-    });
-    format!("{bodies}{stock}: {:.1} cm² overhang, layers at up to {tilt:.0}° from level{leans}", hanging / 100.0)
 }
 
 /// What came of planning it, as the end of a sentence.

@@ -2,6 +2,7 @@
 
 pub use bead_part::directions::{Division, Piece, Settings, by_planes, divisions};
 
+use crate::chart::Chart;
 use crate::dialect::{self, own};
 use crate::layer::Layer;
 use crate::metrics::Metrics;
@@ -9,7 +10,7 @@ use crate::model::Part;
 use crate::plan::choice::{Choice, choose};
 use crate::plan::{Header, PlanError, Sink, plan_into};
 use crate::profile::{Body, Profile};
-use crate::task::{Cancelled, Task};
+use crate::task::{Cancelled, Stage, Task};
 use crate::warning::WarningKind;
 use std::convert::Infallible;
 
@@ -52,6 +53,15 @@ pub struct Found {
     pub tilted: Option<Tried>,
 }
 
+impl Found {
+    /// Those to choose from, in their order: level layers only where nothing else is found, or where they can be welded.
+    pub fn offered(self) -> Vec<Tried> {
+        let only = self.divisions.len() == 1;
+        let is_offered = |found: &Tried| only || !found.is_level() || found.is_planned();
+        self.divisions.into_iter().filter(is_offered).collect()
+    }
+}
+
 /// Divides a part that stands on the table, and plans it in each way until one can be welded: as what is recognized in it, in
 /// pieces cut off by planes, in level layers. `name` is that of a part in one piece; `kept` is whether the strategy of the profile was
 /// asked for ([`choose`]).
@@ -85,10 +95,16 @@ pub fn tried(
     task: &Task,
 ) -> Result<Found, PlanError<Infallible>> {
     let mesh = part.mesh().ok_or(PlanError::ChartOfCurves)?;
-    let trial = |untried: Tried| untried.tried(name, part, profile, kept, task);
+    task.step(Stage::Directions, 0.0)?;
     let mut found = untried(name, part, settings, task)?;
+    let (mut done, most) = (0_u32, found.divisions.len() + LATER);
+    let mut trial = |untried: Tried| {
+        task.step(Stage::Directions, (f64::from(done) / most as f64).min(1.0))?;
+        done += 1;
+        untried.tried(name, part, profile, kept, task)
+    };
     let whole = found.divisions.split_off(found.divisions.len().saturating_sub(1));
-    let mut tried = found.divisions.into_iter().map(trial).collect::<Result<Vec<_>, Cancelled>>()?;
+    let mut tried = found.divisions.into_iter().map(&mut trial).collect::<Result<Vec<_>, Cancelled>>()?;
     // Planes are searched for what is recognized only if it overhangs.
     let welds_it_all = |tried: &Tried| tried.is_planned() && !tried.needs_stock();
     if !tried.is_empty() && !tried.iter().any(welds_it_all) {
@@ -129,6 +145,8 @@ pub fn untried(name: &str, part: &Part, settings: Settings, task: &Task) -> Resu
     Ok(Found { divisions, level, tilted: None })
 }
 
+/// Divisions that may be tried besides those that are found first: by planes.
+const LATER: usize = 3;
 /// Layers that face straight down, °.
 const MOST_TILT: f64 = 180.0;
 /// Enough to ask a dialect whether it writes what a profile wants.
@@ -179,6 +197,32 @@ impl Tried {
     /// Whether a body of it is welded on metal that must be there already.
     pub fn needs_stock(&self) -> bool {
         self.bodies.iter().any(|body| body.on_stock)
+    }
+
+    /// What `layers.bodies` is to hold for it: nothing for level layers.
+    pub fn into_bodies(self) -> Vec<Body> {
+        if self.is_level() { Vec::new() } else { self.bodies }
+    }
+
+    /// How the part is divided, as a sentence without a full stop.
+    pub fn about(&self) -> String {
+        let Division { pieces, hanging, tilt, lean } = &self.division;
+        let bodies = match &pieces[..] {
+            [_] if self.is_level() => return "level layers".to_owned(),
+            [piece] => match &piece.chart {
+                Chart::Guide(guide) => format!("1 body along its middle line, {:.0} mm long", guide.length()),
+                chart => format!("1 body on {chart}"),
+            },
+            pieces => format!("{} bodies", pieces.len()),
+        };
+        let stock =
+            if self.needs_stock() { ", on metal that is there already (the hub, turned from bar stock)" } else { "" };
+        let leans = lean.map_or(String::new(), |lean| {
+            format!(
+                ", walls that lean by up to {lean:.0}° (square to them, layers would begin with no room for a bead)"
+            )
+        });
+        format!("{bodies}{stock}: {:.1} cm² overhang, layers at up to {tilt:.0}° from level{leans}", hanging / 100.0)
     }
 
     /// Its class, and its price in that; the lowest comes first. `level` is what overhangs in level layers, mm².

@@ -3,8 +3,9 @@
 use crate::solids;
 use beadwright::fill::StrategyName;
 
+use beadwright::directions::{Settings, tried};
 use beadwright::example;
-use beadwright::model::{ImportError, Mesh, import};
+use beadwright::model::{ImportError, Mesh, Model, Placement, import};
 use beadwright::plan::{self, PlanError};
 use beadwright::profile::Profile;
 use beadwright::slice::{SliceOptions, Slicer};
@@ -74,6 +75,19 @@ fn import_can_be_watched_and_stopped() {
     check("binary", Stage::Import, |task| import_of(&bytes, task));
     let text = ascii("", &sphere(40.0, 20));
     check("ascii", Stage::Import, |task| import_of(text.as_bytes(), task));
+}
+
+#[test]
+fn the_search_for_directions_can_be_watched_and_stopped() {
+    let profile = Profile::built_in("cmt-steel-abb").unwrap();
+    let hub = Model::read(&example::find("hub").unwrap().stl(), &Task::new()).unwrap();
+    let hub = hub.place(&Placement::default(), None, profile.bead.width).unwrap();
+    let settings = Settings::usual(profile.bead.width);
+    check("hub", Stage::Directions, |task| match tried("hub", &hub, &profile, false, settings, task) {
+        Ok(found) => Ok(assert!(found.divisions[0].is_planned())),
+        Err(PlanError::Cancelled(cancelled)) => Err(cancelled),
+        Err(other) => panic!("{other}"),
+    });
 }
 
 #[test]
