@@ -33,17 +33,18 @@ const ARMS: [[f64; 2]; 12] = [
 const BRIDGE: [[f64; 2]; 8] =
     [[-60.0, 0.0], [-30.0, 0.0], [-30.0, 60.0], [30.0, 60.0], [30.0, 0.0], [60.0, 0.0], [60.0, 90.0], [-60.0, 90.0]];
 
-/// A window with a sheet of this outline, 40 mm thick.
+/// A window with a sheet of this outline, 24 mm thick.
 fn opened(outline: &[[f64; 2]]) -> (TempDir, Window) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("post.stl");
     let outline = Polygon::simple(Ring::new(outline.iter().copied().map(DVec2::from).collect()));
-    let Solid { vertices, triangles } = Solid::extrude(&outline, 0.0, 40.0);
+    let Solid { vertices, triangles } = Solid::extrude(&outline, 0.0, 24.0);
     let upright = |p: DVec3| DVec3::new(p.x, -p.z, p.y);
     let corners = triangles.iter().map(|triangle| triangle.map(|corner| upright(vertices[corner as usize])));
     std::fs::write(&path, stl::write("post", corners)).unwrap();
     let mut harness = studio(&folder.path().join("store"));
     harness.state_mut().act(Action::SetProfile(Profile::built_in_text("cmt-steel-abb").unwrap()));
+    harness.state_mut().set_value("cost.wire_kg", "20.0");
     harness.state_mut().open(&path);
     wait(&mut harness);
     (folder, harness)
