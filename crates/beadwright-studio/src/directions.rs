@@ -1,5 +1,6 @@
 //! Divisions of a part into bodies, each with a build direction of its own, found in the background as by `beadwright directions`.
 
+use crate::computing::Computing;
 use crate::view3d::Scanned;
 use beadwright::directions::{Outcome, Settings, Tried, tried};
 use beadwright::model::{Mesh, Part};
@@ -9,6 +10,15 @@ use std::sync::Arc;
 
 /// At most this many that can be welded are shown.
 const BEST: usize = 3;
+
+/// Divisions looked for, or found.
+pub(crate) struct Dividing {
+    /// The part that is divided.
+    pub(crate) part: Arc<Part>,
+    /// The profile without its bodies.
+    pub(crate) profile: Profile,
+    pub(crate) run: Computing<Ways>,
+}
 
 /// A division that is shown.
 pub struct Way {

@@ -1,27 +1,17 @@
 //! Divisions of the part in the window: looked for, shown in 3-D, used, given up.
 
 use crate::computing::Computing;
-use crate::directions::{Way, Ways};
+use crate::directions::{Dividing, Way, Ways};
 use crate::known::Known;
 use crate::studio::Studio;
 use crate::view::{Mode, ViewState};
 use crate::view3d::Scanned;
-use beadwright::model::Part;
 use beadwright::profile::{Profile, edit};
 use beadwright::task::{Stage, Task};
 use std::sync::Arc;
 
 /// What a step that divides the part is about.
 const BODIES: &str = "layers.bodies";
-
-/// Divisions looked for, or found.
-pub(crate) struct Dividing {
-    /// The part that is divided.
-    part: Arc<Part>,
-    /// The profile without its bodies.
-    profile: Profile,
-    pub(crate) run: Computing<Ways>,
-}
 
 impl Studio {
     /// Looks for divisions of the part.

@@ -3,8 +3,8 @@
 
 use crate::actions::Action;
 use crate::compared::Compared;
+use crate::directions::Dividing;
 use crate::distortion::Distorting;
-use crate::dividing::Dividing;
 use crate::export::Export;
 use crate::form::{self, Parsed};
 use crate::heat::Temperatures;

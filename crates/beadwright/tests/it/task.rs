@@ -83,11 +83,21 @@ fn the_search_for_directions_can_be_watched_and_stopped() {
     let hub = Model::read(&example::find("hub").unwrap().stl(), &Task::new()).unwrap();
     let hub = hub.place(&Placement::default(), None, profile.bead.width).unwrap();
     let settings = Settings::usual(profile.bead.width);
-    check("hub", Stage::Directions, |task| match tried("hub", &hub, &profile, false, settings, task) {
-        Ok(found) => Ok(assert!(found.divisions[0].is_planned())),
+    let call = |task: &Task| match tried("hub", &hub, &profile, false, settings, task) {
+        Ok(found) => Ok(found.divisions[0].is_planned()),
         Err(PlanError::Cancelled(cancelled)) => Err(cancelled),
         Err(other) => panic!("{other}"),
-    });
+    };
+    let (task, steps) = watched(None);
+    assert_eq!(call(&task), Ok(true));
+    let steps = steps.lock().unwrap().clone();
+    let whole = |at: &usize| steps[*at].0 == Stage::Directions;
+    let done: Vec<f64> = (0..steps.len()).filter(whole).map(|at| steps[at].1).collect();
+    assert!(done.len() > 1 && done.is_sorted() && done.iter().all(|done| (0.0..1.0).contains(done)), "{done:?}");
+    // Before it begins, before a division is planned, and while one is.
+    for at in (0..steps.len()).filter(whole).chain([steps.len() / 2]) {
+        assert_eq!(call(&watched(Some(at)).0), Err(Cancelled), "at step {at}");
+    }
 }
 
 #[test]
