@@ -14,11 +14,11 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     model: model::Model,
     /// Largest angle between a wall and the direction in which it is built, degrees.
-    #[arg(long, value_name = "DEG", default_value_t = LEAN, value_parser = parse_lean)]
+    #[arg(long, value_name = "DEG", default_value_t = Settings::LEAN, value_parser = parse_lean)]
     lean: f64,
     /// Largest angle between a direction and the vertical, degrees: what the positioner can tilt, or the torch can lean.
     /// Beyond 90 only branches on branches go, in layers around the one that carries them.
-    #[arg(long, value_name = "DEG", default_value_t = TILT, value_parser = parse_tilt)]
+    #[arg(long, value_name = "DEG", default_value_t = Settings::TILT, value_parser = parse_tilt)]
     tilt: f64,
     /// List the divisions without planning each for trial, which takes as long as planning the part several times.
     #[arg(long)]
@@ -48,17 +48,12 @@ pub(crate) fn bodies(
         profile.layers.are_level() && profile.layers.bodies.is_empty(),
         "--directions auto: the profile says how layers lie (layers.chart, layers.bodies): leave that out."
     );
-    let settings = Settings { lean: LEAN, tilt: TILT, bead: profile.bead.width };
+    let settings = Settings::usual(profile.bead.width);
     let Found { divisions, .. } = tried(name, part, profile, kept, settings, task)?;
     let best = divisions.into_iter().next().with_context(|| name.to_owned())?;
-    let sentence = format!("Directions were found while planning (--directions auto): {}.", best.described());
-    let bodies = if best.is_level() { Vec::new() } else { best.bodies };
-    Ok((bodies, sentence))
+    let sentence = format!("Directions were found while planning (--directions auto): {}.", best.about());
+    Ok((best.into_bodies(), sentence))
 }
-
-/// Largest angles of walls from the direction in which they are built, and of directions from the vertical, °.
-const LEAN: f64 = 45.0;
-const TILT: f64 = 90.0;
 
 fn parse_lean(text: &str) -> Result<f64, String> {
     degrees(text, 5.0..=80.0)
@@ -98,7 +93,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let offered: Vec<&Tried> = found.offered().collect();
     for (number, tried) in offered.iter().enumerate() {
         let verdict = tried.verdict().map_or(String::new(), |verdict| format!(" {verdict}"));
-        writeln!(out, "{}. {}.{verdict}", number + 1, tried.described())?;
+        writeln!(out, "{}. {}.{verdict}", number + 1, tried.about())?;
     }
     if found.divisions.len() == 1 {
         writeln!(out, "No other direction avoids much of it.")?;

@@ -59,8 +59,12 @@ impl Studio {
                 }
                 self.view.playing = false;
                 self.view.pin = None;
-                if self.jobs.distortion.as_ref().is_some_and(|distortion| distortion.progress().is_some()) {
+                self.view.division = None;
+                if self.jobs.distortion.as_ref().is_some_and(|distortion| distortion.run.progress().is_some()) {
                     self.stop_distortion();
+                }
+                if self.jobs.dividing.as_ref().is_some_and(|dividing| dividing.run.progress().is_some()) {
+                    self.stop_directions();
                 }
             }
             Action::Solid => self.view.switch(Mode::Solid),
@@ -139,6 +143,9 @@ impl Studio {
             Action::Heat => self.begin_heat(),
             Action::Level => self.begin_level(),
             Action::Orient => self.begin_orienting(),
+            Action::FindDirections => self.begin_directions(),
+            Action::StopDirections => self.stop_directions(),
+            Action::Divide(way) => self.divide(way),
             Action::Distort => self.begin_distortion(),
             Action::List => self.begin_listing(),
             Action::StopDistortion => self.stop_distortion(),

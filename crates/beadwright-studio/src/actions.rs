@@ -86,6 +86,12 @@ pub enum Action {
     Place(Placement),
     /// Turns the part the way up in which it costs least.
     Orient,
+    /// Looks for divisions of the part into bodies with directions of their own.
+    FindDirections,
+    /// Gives it up.
+    StopDirections,
+    /// Welds the part as a division that was found, given by its place among them.
+    Divide(usize),
     /// Plans the preform of the part, or the part itself.
     Preform(bool),
     /// Sets the height of a wall made from curves, mm.

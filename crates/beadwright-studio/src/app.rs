@@ -81,6 +81,7 @@ impl Studio {
         }
         self.hear_of_scan();
         self.hear_of_distortion();
+        self.hear_of_directions();
         match jobs::take(&mut self.jobs.suggest_job) {
             Some(Ok(found)) => self.jobs.suggested = Some(found),
             Some(Err(error)) => self.complain(error),

@@ -1,11 +1,12 @@
 //! The bent shape in the window: computed, shown in 3-D, given up.
 
+use crate::computing::Computing;
 use crate::distortion::{Distorted, Distorting};
 use crate::known::Known;
 use crate::studio::Studio;
 use crate::view::{Mode, ViewState};
 use crate::view3d::Bent;
-use beadwright::task::Task;
+use beadwright::task::{Stage, Task};
 use std::sync::Arc;
 
 impl Studio {
@@ -15,7 +16,8 @@ impl Studio {
         let Some(profile) = own.profile.clone() else { return };
         let (layers, drawn) = (own.layers.clone(), own.scene.layers().to_vec());
         let work = move |task: &Task| Distorted::of(&layers, &drawn, &profile, clamps, task);
-        self.jobs.distortion = Some(Distorting::start(&self.window.ctx, clamps, work));
+        let run = Computing::start(&self.window.ctx, Stage::Distort, work);
+        self.jobs.distortion = Some(Distorting { clamps, run });
     }
 
     /// Gives it up.
@@ -27,7 +29,7 @@ impl Studio {
     /// Takes what was computed, and bends the beads in 3-D to what is to be shown.
     pub(crate) fn hear_of_distortion(&mut self) {
         if let Some(distortion) = &mut self.jobs.distortion {
-            distortion.hear();
+            distortion.run.hear();
         }
         let times = self.view.bend.times.or(self.known().distorted().map(|distorted| distorted.times));
         let bent = self.known().bent(&self.view).cloned();
@@ -38,7 +40,7 @@ impl Studio {
 impl<'a> Known<'a> {
     /// How plate and part bend, once it is computed.
     pub(crate) fn distorted(self) -> Option<&'a Distorted> {
-        self.jobs.distortion.as_ref()?.result.as_ref()?.as_ref().ok()
+        self.jobs.distortion.as_ref()?.run.found()
     }
 
     /// The bent shape that is shown in 3-D, if one is.

@@ -74,6 +74,7 @@ enum Panel {
     Findings,
     Plots,
     Program,
+    Directions,
     Export,
 }
 
@@ -145,6 +146,7 @@ fn begin(cc: &eframe::CreationContext<'_>, arguments: &Arguments) -> Studio {
         Panel::Findings => Side::Findings,
         Panel::Plots => Side::Plots,
         Panel::Program => Side::Program,
+        Panel::Directions => Side::Directions,
         Panel::Export => Side::Export,
     });
     view.show.heights |= arguments.heights;

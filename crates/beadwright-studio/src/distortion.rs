@@ -1,6 +1,6 @@
 //! How plate and part bend as the metal cools, computed in the background.
 
-use crate::jobs::{self, Job};
+use crate::computing::Computing;
 use crate::level::Drawn;
 use crate::view3d::Bent;
 use beadwright::distort::{Deviation, Distortion, Lift, Shape};
@@ -8,9 +8,7 @@ use beadwright::distortion::{Clamps, Setup, Welding};
 use beadwright::layer::Layer;
 use beadwright::profile::Profile;
 use beadwright::task::Task;
-use eframe::egui::Context;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 /// How many times as large as computed movements can be drawn at first, and the part of the body's size by which the farthest
 /// place may then seem to move: as in the page of `beadwright distort`.
@@ -74,44 +72,5 @@ fn at_first(built: &Distortion, most: f64) -> f64 {
 /// A computation for clamps at these places, under way or done.
 pub(crate) struct Distorting {
     pub(crate) clamps: Clamps,
-    task: Task,
-    /// Bits of the fraction that is done.
-    done: Arc<AtomicU64>,
-    job: Option<Job<Result<Distorted, String>>>,
-    pub(crate) result: Option<Result<Distorted, String>>,
-}
-
-impl Distorting {
-    pub(crate) fn start(
-        ctx: &Context,
-        clamps: Clamps,
-        work: impl FnOnce(&Task) -> Result<Distorted, String> + Send + 'static,
-    ) -> Self {
-        let done = Arc::new(AtomicU64::new(0));
-        let (bits, bell) = (done.clone(), ctx.clone());
-        let task = Task::with_progress(move |_, fraction| {
-            bits.store(fraction.to_bits(), Ordering::Relaxed);
-            bell.request_repaint();
-        });
-        let of_job = task.clone();
-        Self { clamps, task, done, job: Some(Job::start(ctx, move || work(&of_job))), result: None }
-    }
-
-    /// The fraction that is done, while it is under way.
-    pub(crate) fn progress(&self) -> Option<f64> {
-        self.job.as_ref().map(|_| f64::from_bits(self.done.load(Ordering::Relaxed)))
-    }
-
-    /// Takes the answer, if there is one.
-    pub(crate) fn hear(&mut self) {
-        if let Some(answer) = jobs::take(&mut self.job) {
-            self.result = Some(answer.and_then(|answer| answer));
-        }
-    }
-}
-
-impl Drop for Distorting {
-    fn drop(&mut self) {
-        self.task.cancel();
-    }
+    pub(crate) run: Computing<Distorted>,
 }

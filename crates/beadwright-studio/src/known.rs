@@ -3,6 +3,7 @@
 
 use crate::actions::Action;
 use crate::compared::Compared;
+use crate::directions::Dividing;
 use crate::distortion::Distorting;
 use crate::export::Export;
 use crate::form::{self, Parsed};
@@ -119,6 +120,8 @@ pub(crate) struct Jobs {
     pub(crate) listing: Option<Listed>,
     /// How plate and part bend, computed or being computed.
     pub(crate) distortion: Option<Distorting>,
+    /// Divisions of the part, found or looked for.
+    pub(crate) dividing: Option<Dividing>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
     pub(crate) reach: Option<Reach>,
     pub(crate) suggest_job: Option<Job<Option<Suggestion>>>,
@@ -152,7 +155,8 @@ impl Jobs {
             || self.scan_job.is_some()
             || self.listing_job.is_some()
             || self.scan_wanted.is_some()
-            || self.distortion.as_ref().is_some_and(|distortion| distortion.progress().is_some());
+            || self.dividing.as_ref().is_some_and(|dividing| dividing.run.progress().is_some())
+            || self.distortion.as_ref().is_some_and(|distortion| distortion.run.progress().is_some());
         !computes && !self.looked.is_busy()
     }
 }
@@ -282,7 +286,9 @@ impl<'a> Known<'a> {
     pub(crate) fn style(self, view: &ViewState) -> Style {
         let inner = view.scan && self.scan().is_some() || view.stock && self.has_stock();
         let bent = self.bent(view).is_some();
-        let scan = inner && view.mode == Mode::Solid && !view.laying && !bent;
+        let divided = self.pieces(view).is_some();
+        let scan = inner && view.mode == Mode::Solid && !view.laying && !bent && !divided;
+        let beads = !scan && !divided;
         let arm = self.arm(view).filter(|_| !bent);
         let at_arm = self.torch_place(view).filter(|_| arm.is_some()).map(|place| place.torch);
         let scene = &self.plans.own.scene;
@@ -293,12 +299,13 @@ impl<'a> Known<'a> {
             range: self.range(view).filter(|_| !bent),
             mesh: view.mesh || view.laying,
             scan,
+            pieces: divided,
             bent: bent && view.plate,
-            travels: view.show.travels && !scan,
-            starts: view.show.starts && !scan,
+            travels: view.show.travels && beads,
+            starts: view.show.starts && beads,
             marks_from: if view.all_marks { 0 } else { view.last },
-            // Beads would be in front of the faces to be clicked, and in front of the scan.
-            beads: view.show.beads && !view.laying && !scan,
+            // Beads would be in front of the faces to be clicked, and in front of the scan or the bodies.
+            beads: view.show.beads && !view.laying && beads,
             layers: view.first..=view.last,
             segments_of_last: (view.progress < 1.0).then(reached),
             section: view.section,

@@ -11,6 +11,8 @@
 //! | [`planner`], [`state`] | planning in the background, on a thread or in a browser's worker, and its results so far |
 //! | [`jobs`], [`heat`], [`level`], [`steps`] | other background work: reach, file dialogs; temperatures; how far layers lean; the steps of strategies |
 //! | [`distortion`], `bending` | how plate and part bend as they cool |
+//! | [`directions`], `dividing` | divisions of the part into bodies with build directions of their own |
+//! | `computing` | a long computation with its progress, which can be given up |
 //! | [`compared`], `scan` | a scan of the built part compared with the part |
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
@@ -36,8 +38,11 @@ pub mod arm;
 mod bending;
 pub mod chinese;
 pub mod compared;
+mod computing;
+pub mod directions;
 pub mod disk;
 pub mod distortion;
+mod dividing;
 pub mod export;
 mod files;
 pub mod fonts;

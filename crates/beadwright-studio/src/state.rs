@@ -102,6 +102,11 @@ impl PlanState {
         self.received == Received::Layers
     }
 
+    /// Whether the part in view is that of the last request.
+    pub fn is_placed(&self) -> bool {
+        self.received != Received::Nothing
+    }
+
     /// Its totals as far as they are known.
     pub fn totals(&self) -> Rows {
         let metrics = self.summary.as_ref().map(|summary| &summary.metrics);

@@ -177,6 +177,7 @@ impl Studio {
         self.open.refused = None;
         self.open.asks_undo = false;
         self.close_scan();
+        self.stop_directions();
         self.follow_profile();
         self.flat.clear_measure();
         self.view.reset();
@@ -243,8 +244,10 @@ impl Studio {
         (self.jobs.listing, self.jobs.listing_job) = (None, None);
         (self.jobs.heat_job, self.jobs.level_job, self.jobs.distortion) = (None, None, None);
         self.jobs.orient_job = None;
+        self.keep_directions();
         if self.project().source.is_none() {
             // Undo has led back to the empty window.
+            self.stop_directions();
             self.plans.planner.cancel();
             self.plans.own = PlanState::default();
             self.plans.other = None;

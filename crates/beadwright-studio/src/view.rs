@@ -29,6 +29,8 @@ pub enum Side {
     Plots,
     /// The lines of the program.
     Program,
+    /// Divisions of the part into bodies.
+    Directions,
     /// What can be exported.
     Export,
 }
@@ -98,6 +100,8 @@ pub struct ViewState {
     pub plate: bool,
     /// How plate and part are shown as they bend.
     pub bend: Bend,
+    /// The division of the part that is shown in place of the beads, by its place among those that were found.
+    pub division: Option<usize>,
     /// Whether the robot's arm is shown.
     pub robot: bool,
     /// Whether the next click in 3-D chooses the face on which the part is laid.
@@ -165,6 +169,7 @@ impl Default for ViewState {
             parallel: false,
             plate: true,
             bend: Bend::default(),
+            division: None,
             robot: false,
             laying: false,
             placing: false,
@@ -198,7 +203,7 @@ impl ViewState {
         let (laying, placing, grip) = (false, false, None);
         let (wanted, left, chosen, torch, section) = (None, None, None, None, None);
         let shown = Self { wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
-        *self = Self { laying, placing, grip, pin: None, bend: Bend::default(), range: None, ..shown };
+        *self = Self { laying, placing, grip, pin: None, bend: Bend::default(), division: None, range: None, ..shown };
     }
 
     /// Keeps the range within the existing layers.

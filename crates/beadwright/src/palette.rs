@@ -34,6 +34,18 @@ pub const AXES: [Rgb; 3] = [[224, 82, 76], [92, 178, 92], [84, 140, 232]];
 /// The curves of a plot, and all else that has numbers for names (most are Okabe and Ito's, 2008).
 pub const CURVES: [Rgb; 6] = [[0, 75, 135], [213, 94, 0], [0, 158, 115], [216, 143, 192], [138, 28, 74], [0, 0, 0]];
 
+/// The bodies that a part is welded as, in their order: colours of faces, none so dark or so bright that their shading is lost.
+pub const BODIES: [Rgb; 8] = [
+    [120, 100, 220],
+    [240, 160, 40],
+    [40, 140, 100],
+    [220, 160, 240],
+    [160, 60, 140],
+    [160, 200, 120],
+    [120, 100, 20],
+    [20, 240, 200],
+];
+
 /// Values from little to much, of rising lightness (after matplotlib's "viridis", less its ends, which would vanish on dark and
 /// on bright ground).
 pub const RISING: [Rgb; 5] = [[71, 45, 123], [49, 104, 142], [32, 146, 140], [94, 201, 98], [223, 227, 24]];
@@ -66,10 +78,9 @@ pub const fn kind(kind: PassKind) -> Rgb {
     }
 }
 
-/// The colour of a body of a part, by its index; it comes again after five.
+/// The colour of a body of a part, by its index; they come again after eight.
 pub fn body(index: usize) -> Rgb {
-    let [colours @ .., _black] = CURVES;
-    colours[index % colours.len()]
+    BODIES[index % BODIES.len()]
 }
 
 /// What has no value.

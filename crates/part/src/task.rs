@@ -9,6 +9,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub enum Stage {
     /// Reading a model and repairing it.
     Import,
+    /// Finding divisions of a part, each of which is planned for trial.
+    Directions,
     /// Cutting a mesh into layers.
     Slice,
     /// Laying passes into layers.
@@ -26,6 +28,7 @@ impl Stage {
     pub fn name(self) -> &'static str {
         match self {
             Self::Import => "import",
+            Self::Directions => "directions",
             Self::Slice => "slice",
             Self::Plan => "plan",
             Self::Deposit => "deposit",

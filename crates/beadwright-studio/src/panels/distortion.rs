@@ -37,13 +37,13 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     let Some(distortion) = known.jobs.distortion.as_ref().filter(|_| view.state.bend.shown) else { return };
     ui.horizontal_wrapped(|ui| {
         clamps(known, view, ui);
-        match &distortion.result {
+        match &distortion.run.result {
             None => progress(known, distortion, queue, ui),
             Some(Err(sentence)) => drop(ui.colored_label(ui.visuals().warn_fg_color, sentence)),
             Some(Ok(distorted)) => shape(known, view, distorted, ui),
         }
     });
-    if let Some(Ok(distorted)) = &distortion.result {
+    if let Some(Ok(distorted)) = &distortion.run.result {
         ui.horizontal_wrapped(|ui| {
             // Lines break between figures, not within them.
             ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
@@ -66,7 +66,7 @@ fn clamps(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
 }
 
 fn progress(known: Known<'_>, distortion: &Distorting, queue: &mut Queue, ui: &mut Ui) {
-    let done = distortion.progress().unwrap_or_default() as f32;
+    let done = distortion.run.progress().map_or(0.0, |progress| progress.done as f32);
     ui.weak(known.t("stage-distort"));
     ui.add(ProgressBar::new(done).desired_width(160.0).show_percentage());
     if ui.button(known.t("cancel")).clicked() {

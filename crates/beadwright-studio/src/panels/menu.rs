@@ -204,9 +204,10 @@ fn verdict(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui) {
     }
 }
 
-fn stage_text(stage: Stage) -> &'static str {
+pub(super) fn stage_text(stage: Stage) -> &'static str {
     match stage {
         Stage::Import => "stage-import",
+        Stage::Directions => "stage-directions",
         Stage::Heat => "stage-heat",
         Stage::Distort => "stage-distort",
         Stage::Slice => "stage-slice",

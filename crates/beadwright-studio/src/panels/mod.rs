@@ -5,6 +5,7 @@ mod bead;
 mod centre;
 mod clock;
 mod compare;
+mod directions;
 mod distortion;
 mod export;
 mod findings;
@@ -87,13 +88,16 @@ fn room(ui: &Ui, text: String) -> Vec2 {
 }
 
 fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
-    let tabs = [
+    let mut tabs = vec![
         (Side::Totals, "totals"),
         (Side::Findings, "findings"),
         (Side::Plots, "plots"),
         (Side::Program, "program"),
         (Side::Export, "export"),
     ];
+    if known.jobs.dividing.is_some() || view.state.side == Side::Directions {
+        tabs.push((Side::Directions, "directions"));
+    }
     ui.horizontal_wrapped(|ui| {
         for (side, key) in tabs {
             let count = if side == Side::Findings { known.plans.own.found() } else { 0 };
@@ -116,6 +120,7 @@ fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
         Side::Findings => findings::show(known, view, queue, ui),
         Side::Plots => plots::show(known, view, queue, ui),
         Side::Program => {}
+        Side::Directions => directions::show(known, view, queue, ui),
         Side::Export => export::show(known, view, queue, ui),
     });
 }

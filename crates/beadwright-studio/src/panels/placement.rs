@@ -1,5 +1,6 @@
 //! How the part is placed: units, scale, turn, shift; and whether its preform is planned.
 
+use super::directions;
 use crate::actions;
 use crate::actions::Action;
 use crate::known::{Known, Queue, View};
@@ -33,6 +34,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
             if oriented.on_hover_text(known.t("orient-hint")).clicked() {
                 queue.push(Action::Orient);
             }
+            directions::find(known, view, queue, ui);
             let (by_face, solid) = (known.t("lay-by-face"), known.plans.own.scene.mesh().is_some());
             if ui.add_enabled(solid, Button::selectable(view.state.laying, by_face)).clicked() {
                 view.state.laying = !view.state.laying;

@@ -27,8 +27,8 @@ const COLOURS: [(Colour, &str); 8] = [
 pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| bar(known, view, queue, ui));
     ui.horizontal_wrapped(|ui| {
-        // A bent shape has the colours of its movement, with a legend of its own.
-        if known.bent(view.state).is_none() {
+        // A bent shape has the colours of its movement, and bodies have their own, each with a legend elsewhere.
+        if known.bent(view.state).is_none() && known.pieces(view.state).is_none() {
             colours(known, view, queue, ui);
             legend(known, view, ui);
             ui.separator();

@@ -8,7 +8,7 @@
 //! | `beads` | one layer as it is drawn and timed |
 //! | `lie` | how it lies in space |
 //! | `scene` | the model and the layers planned so far |
-//! | `scanned` | a scan of the built part |
+//! | `scanned` | a scan of the built part; the part in the colours of its bodies |
 //! | `bent` | how far plate and beads move as they cool |
 //! | `style`, [`palette`] | what is shown and in which colours |
 //! | `section` | a plane that cuts away what lies beyond it |

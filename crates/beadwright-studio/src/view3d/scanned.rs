@@ -1,6 +1,7 @@
-//! A scan as it is drawn: its points, each with the colour of its deviation.
+//! A scan as it is drawn: its points, each with the colour of its deviation; and the part in the colours of its bodies.
 
-use beadwright::model::Milled;
+use super::palette::STEPS;
+use beadwright::model::{Mesh, Milled};
 use glam::DVec3;
 
 /// Fraction of the points whose deviation the colours resolve; those beyond get the colour at the end, so that a little
@@ -44,6 +45,18 @@ impl Scanned {
             (0..mesh.triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         let over: Vec<f64> = stock.iter().flat_map(|stock| [*stock; 3]).collect();
         Self::new(&points, &triangles, &over)
+    }
+
+    /// The bodies of a part, each in its own colour; `None` if all of them are empty.
+    pub fn pieces(bodies: &[Mesh]) -> Option<Self> {
+        let (mut points, mut triangles) = (Vec::new(), Vec::new());
+        for (number, body) in bodies.iter().enumerate() {
+            let first = points.len() as u32;
+            let colour = (number % STEPS) as f32 / (STEPS - 1) as f32;
+            points.extend(body.vertices.iter().map(|at| <[f32; 4]>::from(at.as_vec3().extend(colour))));
+            triangles.extend(body.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+        }
+        (!triangles.is_empty()).then_some(Self { points, triangles, range: 0.0 })
     }
 
     /// The deviation that the ends of the colours stand for, mm.

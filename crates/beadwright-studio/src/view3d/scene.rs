@@ -38,10 +38,13 @@ pub struct Scene {
     /// By segment.
     leans: Vec<Option<Values>>,
     scan: Option<Scanned>,
+    /// The part in the colours of its bodies.
+    pieces: Option<Arc<Scanned>>,
     bend: Option<Bend>,
     version: u64,
     mesh_version: u64,
     scan_version: u64,
+    pieces_version: u64,
 }
 
 /// Sides of the prism of [`Scene::outline`].
@@ -71,8 +74,8 @@ pub struct Position {
 impl Scene {
     /// Forgets model and layers.
     pub fn clear(&mut self) {
-        let [version, mesh_version, scan_version] = std::array::from_fn(|_| fresh_id());
-        *self = Self { version, mesh_version, scan_version, ..Self::default() };
+        let [version, mesh_version, scan_version, pieces_version] = std::array::from_fn(|_| fresh_id());
+        *self = Self { version, mesh_version, scan_version, pieces_version, ..Self::default() };
     }
 
     /// Forgets the layers.
@@ -95,6 +98,14 @@ impl Scene {
     pub fn set_scan(&mut self, scan: Option<Scanned>) {
         self.scan = scan;
         (self.version, self.scan_version) = (fresh_id(), fresh_id());
+    }
+
+    /// Shows the part in the colours of its bodies, or no longer.
+    pub fn show_pieces(&mut self, pieces: Option<Arc<Scanned>>) {
+        if self.pieces.as_ref().map(Arc::as_ptr) != pieces.as_ref().map(Arc::as_ptr) {
+            self.pieces = pieces;
+            (self.version, self.pieces_version) = (fresh_id(), fresh_id());
+        }
     }
 
     /// Bends plate and layers to a shape, its movement multiplied by a factor; without one they are straight again.
@@ -165,6 +176,11 @@ impl Scene {
         self.scan.as_ref()
     }
 
+    /// The part in the colours of its bodies.
+    pub fn pieces(&self) -> Option<&Arc<Scanned>> {
+        self.pieces.as_ref()
+    }
+
     /// The layers as planned; `None` for those not there yet.
     pub fn layers(&self) -> &[Option<Arc<LayerBeads>>] {
         &self.layers
@@ -228,6 +244,10 @@ impl Scene {
 
     pub(super) fn scan_version(&self) -> u64 {
         self.scan_version
+    }
+
+    pub(super) fn pieces_version(&self) -> u64 {
+        self.pieces_version
     }
 
     /// Lowest and highest corner of model and beads, mm.
@@ -325,7 +345,7 @@ impl Scene {
     /// The values at the two ends of a colour map; `None` for kinds, and where there is nothing to show.
     pub fn value_range(&self, colour: Colour) -> Option<(f64, f64)> {
         match colour {
-            Colour::Kind => None,
+            Colour::Kind | Colour::Body => None,
             Colour::Order => Some((0.0, self.segments() as f64)),
             Colour::Time => Some((0.0, self.total_seconds())),
             Colour::Speed => self.range(LayerBeads::speed_range),

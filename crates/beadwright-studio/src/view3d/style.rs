@@ -29,6 +29,8 @@ pub enum Colour {
     OffLevel,
     /// How far the metal moves where plate and part are bent, mm.
     Movement,
+    /// Which of the bodies of a division it belongs to; the colours of the part, not of beads.
+    Body,
 }
 
 /// The plate on which the part is built; its top is z = 0.
@@ -53,6 +55,8 @@ pub struct Style {
     pub mesh: bool,
     /// Whether the scan is shown, coloured by its deviation; then only the edges of the model are.
     pub scan: bool,
+    /// Whether the part is shown in the colours of its bodies; then only the edges of the model are shown besides.
+    pub pieces: bool,
     /// Whether the bent plate is shown, in the colours of its movement; then only the edges of the model are.
     pub bent: bool,
     /// Whether travels (moves with the arc off) are shown.
@@ -88,6 +92,7 @@ impl Default for Style {
             range: None,
             mesh: true,
             scan: false,
+            pieces: false,
             bent: false,
             travels: false,
             starts: false,

@@ -13,6 +13,8 @@ fn scales_are_those_of_the_palette() {
         assert_eq!(palette::at(Colour::Temperature, part), warmth(part));
         assert_eq!(palette::at(Colour::HeightError, part), height(2.0 * part));
     }
+    let bodies = palette::map(Colour::Body);
+    assert!(bodies.iter().zip(beadwright::palette::BODIES.iter().cycle()).all(|(colour, of)| colour == of));
     let kinds = palette::map(Colour::Kind);
     assert!(kinds.iter().zip(palette::KINDS).all(|(colour, of)| *colour == kind(of)));
 }

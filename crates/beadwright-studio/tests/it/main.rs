@@ -11,6 +11,7 @@ mod heat;
 mod holding;
 mod inside;
 mod listing;
+mod pieces;
 mod project;
 mod section;
 mod space;

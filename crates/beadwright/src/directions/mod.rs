@@ -12,7 +12,7 @@ use crate::model::Part;
 use crate::plan::choice::{Choice, choose};
 use crate::plan::{Blocked, Header, PlanError, Sink, Summary, plan_into};
 use crate::profile::{Body, Profile};
-use crate::task::{Cancelled, Task};
+use crate::task::{Cancelled, Stage, Task};
 use crate::warning::WarningKind;
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -93,9 +93,15 @@ pub fn tried(
     task: &Task,
 ) -> Result<Found, PlanError<Infallible>> {
     let mesh = part.mesh().ok_or(PlanError::ChartOfCurves)?;
-    let trials = Trials { name, part, profile, kept, task };
-    let trial = |division: Division| trials.of(division);
+    task.step(Stage::Directions, 0.0)?;
     let mut found = untried(name, part, settings, task)?;
+    let (trials, most) = (Trials { name, part, profile, kept, task }, found.divisions.len() + LATER);
+    let mut done = 0_u32;
+    let mut trial = |division: Division| {
+        task.step(Stage::Directions, (f64::from(done) / most as f64).min(1.0))?;
+        done += 1;
+        trials.of(division)
+    };
     let whole = found.divisions.split_off(found.divisions.len().saturating_sub(1));
     let mut tried =
         found.divisions.into_iter().map(|found| trial(found.division)).collect::<Result<Vec<_>, Cancelled>>()?;
@@ -104,7 +110,7 @@ pub fn tried(
     if !tried.is_empty() && !tried.iter().any(welds_it_all) {
         let is_known = |division: &Division| tried.iter().any(|tried| tried.division == *division);
         let more = by_planes(mesh, settings, task)?.into_iter().filter(|division| !is_known(division));
-        let more = more.map(trial).collect::<Result<Vec<_>, Cancelled>>()?;
+        let more = more.map(&mut trial).collect::<Result<Vec<_>, Cancelled>>()?;
         tried.extend(more);
     }
     let can = tried.iter().any(Tried::is_planned);
@@ -139,6 +145,8 @@ pub fn untried(name: &str, part: &Part, settings: Settings, task: &Task) -> Resu
     Ok(Found { divisions, level, tilted: None })
 }
 
+/// Divisions that may be tried besides those that are found first: by planes.
+const LATER: usize = 3;
 /// Layers that face straight down, °.
 const MOST_TILT: f64 = 180.0;
 /// Enough to ask a dialect whether it writes what a profile wants.
@@ -176,6 +184,11 @@ impl Tried {
     /// Whether a body of it is welded on metal that must be there already.
     pub fn needs_stock(&self) -> bool {
         self.bodies.iter().any(|body| body.on_stock)
+    }
+
+    /// What `layers.bodies` is to hold for it: nothing for level layers.
+    pub fn into_bodies(self) -> Vec<Body> {
+        if self.is_level() { Vec::new() } else { self.bodies }
     }
 
     /// Its class, and its price in that; the lowest comes first. `level` is what overhangs in level layers, mm².

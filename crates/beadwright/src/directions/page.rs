@@ -1,7 +1,7 @@
 //! The page of the divisions of a part: each in 3-D with its bodies in colours, and the figures of all.
 
-use super::{Found, Outcome, Tried};
 use super::sentence::layers;
+use super::{Found, Outcome, Tried};
 use crate::chart::{Bound, Chart, Cylinder};
 use crate::model::Mesh;
 use crate::number::fixed;
@@ -22,12 +22,22 @@ pub fn page(name: &str, mesh: &Mesh, found: &Found) -> Sheet {
     };
     let lead = format!("{how}. In level layers, {:.1} cm² of the part overhang.", found.level / 100.0);
     let mut sheet = Sheet::new(&format!("Directions: {name}"), &lead);
-    let head = ["division", "bodies", "overhang, cm²", "steepest layers, °", "result", "time, h", "wire, kg", "price", "covered, %"];
+    let head = [
+        "division",
+        "bodies",
+        "overhang, cm²",
+        "steepest layers, °",
+        "result",
+        "time, h",
+        "wire, kg",
+        "price",
+        "covered, %",
+    ];
     let offered: Vec<&Tried> = found.offered().collect();
     let rows: Vec<Row> = offered.iter().enumerate().map(|(k, tried)| row(k + 1, tried)).collect();
     sheet.table(&head, &rows);
     for (k, tried) in offered.iter().enumerate() {
-        sheet.heading(&format!("{}. {}", k + 1, tried.described()));
+        sheet.heading(&format!("{}. {}", k + 1, tried.about()));
         if let Some(verdict) = tried.verdict() {
             sheet.text(&verdict);
         }

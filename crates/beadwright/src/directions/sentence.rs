@@ -6,7 +6,7 @@ use glam::DVec3;
 
 impl Tried {
     /// What the part is divided into, without a full stop.
-    pub fn described(&self) -> String {
+    pub fn about(&self) -> String {
         let Division { pieces, hanging, tilt, lean } = &self.division;
         let bodies = match &pieces[..] {
             [_] if self.is_level() => return "level layers".to_owned(),

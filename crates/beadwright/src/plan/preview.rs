@@ -18,7 +18,8 @@ use std::convert::Infallible;
 
 /// Layer `index` of a part's plan (from 0; the top one if there are fewer), planned as if the torch began with it. It
 /// may differ from the same layer in the whole plan only in start points and order, in what heat changes, and in the
-/// metal that level layers get for what the layers below have built.
+/// metal that level layers get for what the layers below have built. `None` for a part without layers, and for one that is welded as
+/// several bodies.
 ///
 /// # Errors
 /// [`PlanError`].
@@ -28,6 +29,10 @@ pub fn preview(
     index: usize,
     task: &Task,
 ) -> Result<Option<Layer>, PlanError<Infallible>> {
+    // Which layer of which body it is shows only in the plan.
+    if !profile.layers.bodies.is_empty() {
+        return Ok(None);
+    }
     let settings = &PlanSettings::of(profile);
     let filled = match part {
         Part::Mesh(import) => {

@@ -1,7 +1,8 @@
 //! Changes values in the text of a profile; its comments and its order are kept.
 
-use super::{Profile, ProfileError};
-use toml_edit::{DocumentMut, Item, Table, Value};
+use super::{Body, Profile, ProfileError};
+use serde::Serialize;
+use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
 
 /// The text of a profile with one value set, such as `45` for `fill.raster_angle`; a value that is not TOML is treated as
 /// text. In a list, the place of an element, from 0, is a part of the key: `program.positioner.axes.0.speed`. The only check
@@ -54,6 +55,48 @@ pub fn without_value(text: &str, key: &str) -> Result<String, ProfileError> {
     if let Some(table) = holder.and_then(Item::as_table_like_mut) {
         table.remove(name);
     }
+    Ok(document.to_string())
+}
+
+/// The text of a profile with these bodies in place of those it has, as tables `[[layers.bodies]]`; without bodies the part is
+/// welded as one.
+///
+/// ```
+/// use beadwright::chart::Chart;
+/// use beadwright::profile::{Body, edit::with_bodies};
+///
+/// let text = with_bodies("[layers]\nheight = 2.0\n", &[Body::of("trunk", Chart::default())])?;
+/// assert_eq!(text, "[layers]\nheight = 2.0\n\n[[layers.bodies]]\nname = \"trunk\"\n");
+/// assert_eq!(with_bodies(&text, &[])?, "[layers]\nheight = 2.0\n");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`ProfileError::Key`] if `layers` is not a table of its own, [`ProfileError::Text`] if the text is not TOML.
+pub fn with_bodies(text: &str, bodies: &[Body]) -> Result<String, ProfileError> {
+    #[derive(Serialize)]
+    struct File<'a> {
+        body: &'a [Body],
+    }
+
+    let mut document = document(&without_value(text, "layers.bodies")?)?;
+    if bodies.is_empty() {
+        return Ok(document.to_string());
+    }
+    let wrong = || ProfileError::Key { key: "layers.bodies".to_owned() };
+    let written = toml::to_string(&File { body: bodies }).map_err(|_| wrong())?;
+    let written = self::document(&written)?;
+    let tables = written["body"].as_array_of_tables().ok_or_else(wrong)?;
+    let layers = document.entry("layers").or_insert(Item::Table(Table::new()));
+    let mut own = ArrayOfTables::new();
+    // Without the places that they have in their own text, they follow the section.
+    for table in tables {
+        let mut table = table.clone();
+        table.set_position(None);
+        table.decor_mut().clear();
+        own.push(table);
+    }
+    layers.as_table_mut().ok_or_else(wrong)?.insert("bodies", Item::ArrayOfTables(own));
     Ok(document.to_string())
 }
 

@@ -133,6 +133,18 @@ fn beads<'a>(layer: &'a Layer, profile: &'a Profile) -> impl Iterator<Item = DVe
     layer.passes.iter().flat_map(|pass| &pass.points).map(move |p| sheet.map_or(*p, |sheet| sheet.at(*p).place))
 }
 
+/// The layer in view, which is planned first, is none of the part's level layers.
+#[test]
+fn a_part_of_several_bodies_has_no_preview() {
+    let (mesh, profile) = y_tube();
+    let seen =
+        |profile: &Profile| beadwright::plan::preview(&imported(mesh.clone()), profile, 3, &Task::new()).unwrap();
+    assert!(seen(&profile).is_none());
+    let mut level = profile.clone();
+    level.layers.bodies.clear();
+    assert!(seen(&level).is_some_and(|layer| layer.index == 3));
+}
+
 #[test]
 fn a_forked_tube_is_welded_whole_at_any_angle() {
     let (mesh, given) = y_tube();

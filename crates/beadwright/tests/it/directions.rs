@@ -147,7 +147,7 @@ fn directions_that_are_offered_first_can_be_welded() {
     let (_, Found { divisions, level, .. }) = found(&posts, 0.0);
     assert!((level - 60.0 * 40.0).abs() < 1.0, "{level}");
     for tried in divisions {
-        let Outcome::Refused { reason, hangs } = tried.outcome else { panic!("{:?}", tried.bodies) };
+        let Outcome::Refused { reason, hangs, .. } = tried.outcome else { panic!("{:?}", tried.bodies) };
         assert!(reason.ends_with('.') && reason.contains("mm"), "{reason}");
         assert!(hangs || !tried.bodies[0].chart.is_level() || tried.bodies.len() > 1, "{reason}");
     }
@@ -174,6 +174,22 @@ fn branches_are_welded_in_an_order_in_which_the_torch_has_room() {
     }
 }
 
+/// What goes on in the layers of the trunk ends there: on the other side, a branch below keeps all its metal.
+#[test]
+fn a_branch_takes_no_metal_from_behind_its_carrier() {
+    let profile = profile("cmt-al2319-kuka");
+    let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
+    for turned in [0.0_f64, 64.0] {
+        let mesh = tree(150.0, &[(40.0, turned, 90.0, 90.0), (90.0, turned + 180.0, 40.0, 100.0)]);
+        let division = divisions(&mesh, settings, &Task::new()).unwrap().swap_remove(0);
+        let [trunk, branch] = &Body::of_division("tree", &division)[..] else { panic!("{:?}", division.pieces) };
+        let away = DMat3::from_rotation_z(turned.to_radians()) * DVec3::NEG_X;
+        let farthest = |body: &Body| body.of_mesh(&mesh).vertices.iter().map(|p| p.dot(away)).fold(f64::MIN, f64::max);
+        assert!(farthest(trunk) < 18.1, "{turned}: {}", farthest(trunk));
+        assert!((farthest(branch) - 100.0).abs() < 0.1, "{turned}: {}", farthest(branch));
+    }
+}
+
 /// The page shows all metal of the part, each body in a colour of its own.
 #[test]
 fn the_page_of_divisions_shows_all_bodies() {
@@ -187,10 +203,10 @@ fn the_page_of_divisions_shows_all_bodies() {
     let cards: Vec<&str> = html.split("class=\"card coloured\"><script type=\"application/json\">").skip(1).collect();
     assert_eq!(cards.len(), found.offered().count());
     let card: serde_json::Value = serde_json::from_str(cards[0].split_once("</script>").unwrap().0).unwrap();
-    let names = card["key"].as_array().unwrap().iter().map(|entry| entry[0].as_str().unwrap());
+    let names: Vec<&str> = card["key"].as_array().unwrap().iter().map(|entry| entry[0].as_str().unwrap()).collect();
     let layers =
         ["level layers", "layers around a cylinder of 18.0 mm radius", "layers around a cylinder of 18.0 mm radius"];
-    assert!(names.zip(layers).all(|(name, layers)| name.ends_with(layers)), "{:?}", card["key"]);
+    assert!(names.len() == 3 && names.iter().zip(layers).all(|(name, layers)| name.ends_with(layers)), "{names:?}");
     let mut bytes = Vec::new();
     let deflated = STANDARD.decode(card["surface"].as_str().unwrap()).unwrap();
     flate2::read::DeflateDecoder::new(&deflated[..]).read_to_end(&mut bytes).unwrap();
@@ -209,9 +225,11 @@ fn the_page_of_divisions_shows_all_bodies() {
     }
     assert_eq!(volumes.len(), 3, "{volumes:?}");
     let (shown, whole) = (volumes.values().sum::<f64>(), mesh.volume());
-    // A body around an axis is drawn with what lies below its first layer: its root in the trunk.
-    let root = 12.0_f64.powi(2) * 18.0 * PI;
-    assert!((0.99 * whole..whole + 2.1 * root).contains(&shown), "{shown} of {whole} mm³");
+    assert!((shown / whole - 1.0).abs() < 0.01, "{shown} of {whole} mm³");
     let trunk = volumes[&beadwright::palette::body(0)];
     assert!((trunk / (18.0_f64.powi(2) * 150.0 * PI) - 1.0).abs() < 0.01, "the trunk has {trunk} mm³");
+    // Blades stand on a hub that is not welded.
+    let hub = example::find("hub").unwrap().mesh();
+    let found = untried("hub", &imported(hub.clone()), settings, &Task::new()).unwrap();
+    assert!(page::page("hub", &hub, &found).html().contains("already there"));
 }

@@ -38,6 +38,7 @@ fn kinds_and_marks_are_told_apart() {
     check_apart("kinds", &KINDS.map(palette::kind), 30.0);
     check_apart("starts and ends", &[palette::START, palette::END], 40.0);
     check_apart("curves", &palette::CURVES, 20.0);
+    check_apart("bodies", &palette::BODIES, 25.0);
     check_apart("leans", &palette::LEANS.map(|(_, colour)| colour), 10.0);
     check_apart("steps", &[palette::STEP, palette::FLIP, palette::kind(PassKind::Contour)], 20.0);
     for colour in KINDS.map(palette::kind).into_iter().chain(palette::HEIGHTS.map(|(_, colour)| colour)) {

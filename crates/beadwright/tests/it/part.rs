@@ -1,10 +1,11 @@
 //! A model becomes a part, and a layer can be seen before the others.
 
 use beadwright::example;
+use beadwright::fill::StrategyName;
 use beadwright::layer::Layer;
 use beadwright::model::{Import, Mesh, Model, Part, PartError, Placement, Units};
 use beadwright::plan;
-use beadwright::profile::{Profile, edit};
+use beadwright::profile::{Body, Predict, Profile, edit};
 use beadwright::task::Task;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -174,6 +175,27 @@ fn an_edit_keeps_the_comments() {
     let removed = edit::without_value(&added, "wall.corner_radius").unwrap();
     assert_eq!(Profile::parse(&removed).unwrap(), Profile::parse(text).unwrap());
     assert!(edit::with_value(text, "name.x", "1").is_err());
+}
+
+/// Bodies go into the section of layers, whatever follows it, replace those that are there, and leave no trace when they are taken out.
+#[test]
+fn bodies_are_written_into_the_text_of_a_profile() {
+    let read = |name: &str| Body::read(&example::find(name).unwrap().bodies().unwrap()).unwrap();
+    let mut odd = read("y-tube");
+    (odd[0].strategy, odd[0].on_stock, odd[1].predict) = (Some(StrategyName::Wall), true, Some(Predict::Never));
+    for name in ["cmt-al2319-kuka", "cmt-steel-abb"] {
+        let text = Profile::built_in_text(name).unwrap();
+        let mut written = text.to_owned();
+        for bodies in [read("hub"), odd.clone()] {
+            written = edit::with_bodies(&written, &bodies).unwrap();
+            let mut wanted = Profile::parse(text).unwrap();
+            wanted.layers.bodies = bodies;
+            assert_eq!(Profile::parse(&written).unwrap(), wanted, "{written}");
+        }
+        assert!(text.lines().all(|line| written.contains(line)), "every comment is kept");
+        assert_eq!(edit::with_bodies(&written, &[]).unwrap(), text);
+    }
+    assert!(edit::with_bodies("layers = 1", &odd).is_err() && edit::with_bodies("layers = {", &odd).is_err());
 }
 
 #[test]

@@ -15,6 +15,9 @@ use beadwright::pass::Along;
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
 use beadwright::report::Report;
+use beadwright::report::bent::Bent;
+use beadwright::report::coloured::Coloured;
+use beadwright::report::sheet::Sheet;
 use beadwright::task::Task;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -359,4 +362,46 @@ fn on_a_phone_charts_scale_and_the_first_column_stays() {
         assert!(answer["wide"] == 0 && answer["page"] == 0, "{answer}");
         assert!(answer["beside"].as_f64().unwrap() > 16.0, "the legend leaves its card: {answer}");
     }
+}
+
+/// Surfaces of pages are drawn with all their triangles, in colours that a key names; a browser without WebGL says so.
+#[test]
+fn surfaces_of_pages_are_drawn() {
+    let [cross, star] = ["cross", "star"].map(|name| example::find(name).unwrap().mesh());
+    let mut coloured = Coloured::default();
+    coloured.add("cross <b>", &cross, [200, 40, 40]);
+    coloured.add("star", &star, [40, 160, 40]);
+    let moved = cross.vertices.iter().map(|p| DVec3::Z * p.x.abs() * 0.01).collect();
+    let (nodes, triangles) = (cross.vertices.clone(), cross.triangles.clone());
+    let bent = Bent { nodes, triangles, shapes: vec![("released".to_owned(), moved)] };
+    let mut sheet = Sheet::new("Surfaces", "");
+    sheet.coloured("Bodies", &coloured).bent(&bent);
+    let script = "<script>(async () => {
+        const rest = ms => new Promise(done => setTimeout(done, ms));
+        const cards = ['.coloured', '.bent'].map(name => document.querySelector(name));
+        const ready = card => !card.querySelector('canvas') || [...card.querySelectorAll('canvas')].some(canvas => canvas.dataset.ready);
+        while (!cards.every(ready)) await rest(20);
+        const triangles = cards.map(card => Number([...card.querySelectorAll('canvas')].find(canvas => canvas.dataset.ready)?.dataset.ready));
+        const pixels = card => {
+          const canvas = [...card.querySelectorAll('canvas')].find(canvas => canvas.dataset.ready), gl = canvas?.getContext('webgl2');
+          if (!gl) return null;
+          const colours = new Uint8Array(4 * canvas.width * canvas.height);
+          gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, colours);
+          let red = 0, green = 0;
+          for (let i = 0; i < colours.length; i += 4) {
+            red += colours[i] > 2 * colours[i + 1];
+            green += colours[i + 1] > 2 * colours[i];
+          }
+          return red > 100 && green > 100;
+        };
+        return { triangles, coloured: pixels(cards[0]), key: [...cards[0].querySelectorAll('.entry')].map(entry => entry.textContent) };
+    })()";
+    let Some(answer) = answer(&sheet.html(), script) else { return };
+    if answer["coloured"].is_null() {
+        return;
+    }
+    let both = cross.triangles.len() + star.triangles.len();
+    assert_eq!(answer["triangles"], serde_json::json!([both, cross.triangles.len()]));
+    assert_eq!(answer["coloured"], true, "both surfaces have their colours");
+    assert_eq!(answer["key"], serde_json::json!(["cross <b>", "star"]));
 }

@@ -3,8 +3,9 @@
 use crate::solids;
 use beadwright::fill::StrategyName;
 
+use beadwright::directions::{Settings, tried};
 use beadwright::example;
-use beadwright::model::{ImportError, Mesh, import};
+use beadwright::model::{ImportError, Mesh, Model, Placement, import};
 use beadwright::plan::{self, PlanError};
 use beadwright::profile::Profile;
 use beadwright::slice::{SliceOptions, Slicer};
@@ -74,6 +75,29 @@ fn import_can_be_watched_and_stopped() {
     check("binary", Stage::Import, |task| import_of(&bytes, task));
     let text = ascii("", &sphere(40.0, 20));
     check("ascii", Stage::Import, |task| import_of(text.as_bytes(), task));
+}
+
+#[test]
+fn the_search_for_directions_can_be_watched_and_stopped() {
+    let profile = Profile::built_in("cmt-steel-abb").unwrap();
+    let hub = Model::read(&example::find("hub").unwrap().stl(), &Task::new()).unwrap();
+    let hub = hub.place(&Placement::default(), None, profile.bead.width).unwrap();
+    let settings = Settings::usual(profile.bead.width);
+    let call = |task: &Task| match tried("hub", &hub, &profile, false, settings, task) {
+        Ok(found) => Ok(found.divisions[0].is_planned()),
+        Err(PlanError::Cancelled(cancelled)) => Err(cancelled),
+        Err(other) => panic!("{other}"),
+    };
+    let (task, steps) = watched(None);
+    assert_eq!(call(&task), Ok(true));
+    let steps = steps.lock().unwrap().clone();
+    let whole = |at: &usize| steps[*at].0 == Stage::Directions;
+    let done: Vec<f64> = (0..steps.len()).filter(whole).map(|at| steps[at].1).collect();
+    assert!(done.len() > 1 && done.is_sorted() && done.iter().all(|done| (0.0..1.0).contains(done)), "{done:?}");
+    // Before it begins, before a division is planned, and while one is.
+    for at in (0..steps.len()).filter(whole).chain([steps.len() / 2]) {
+        assert_eq!(call(&watched(Some(at)).0), Err(Cancelled), "at step {at}");
+    }
 }
 
 #[test]

@@ -45,6 +45,18 @@ pub struct Settings {
     pub bead: f64,
 }
 
+impl Settings {
+    /// What [`Settings::lean`] usually is, °.
+    pub const LEAN: f64 = 45.0;
+    /// What [`Settings::tilt`] usually is, °.
+    pub const TILT: f64 = 90.0;
+
+    /// The usual limits, with a bead of this width, mm.
+    pub fn usual(bead: f64) -> Self {
+        Self { lean: Self::LEAN, tilt: Self::TILT, bead }
+    }
+}
+
 /// A way to divide a part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Division {

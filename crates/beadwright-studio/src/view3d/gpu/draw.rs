@@ -38,14 +38,13 @@ impl Shot<'_> {
         }
         let any_bead = style.beads && drawn.iter().any(|(_, r)| !r.beads.is_empty());
         let surface = gpu.surface.as_ref().filter(|_| style.mesh);
-        let scan = gpu.scan.as_ref().filter(|_| style.scan);
+        let coloured = [(&gpu.pieces, style.pieces), (&gpu.scan, style.scan)];
+        let scan = coloured.into_iter().find(|(mapped, shown)| *shown && mapped.is_there()).map(|(mapped, _)| mapped);
         if let Some(surface) = surface.filter(|_| !any_bead && scan.is_none()) {
             draw_surface(pass, &pipelines.opaque, surface);
         }
         if let Some(scan) = scan {
-            pass.set_bind_group(0, &gpu.scan_binding, &[]);
-            scan.draw(pass, pipelines);
-            pass.set_bind_group(0, &gpu.bindings[0], &[]);
+            scan.draw(pass, pipelines, &gpu.bindings[0]);
         }
         if let Some(plate) = gpu.bent_plate.as_ref().filter(|_| style.bent) {
             plate.draw(pass, pipelines);

@@ -6,7 +6,7 @@
 //! | `values` | what their colours are made from |
 //! | `draw` | the order in which things are drawn |
 //! | `surface` | the model |
-//! | `scan` | a scan of the built part, the bent plate |
+//! | `scan` | a scan of the built part, the bodies of the part, the bent plate |
 //! | `solids` | plate, torch and arm |
 //! | `growing` | a buffer that can grow |
 //! | `globals` | the data passed to all shaders |
@@ -35,7 +35,7 @@ use eframe::egui_wgpu::{RenderState, wgpu};
 use globals::Globals;
 use growing::Growing;
 use pipelines::Pipelines;
-use scan::Scan;
+use scan::{Mapped, Scan};
 pub(super) use solids::BELOW;
 use surface::Surface;
 pub(super) use target::Target;
@@ -81,11 +81,11 @@ pub(super) struct Gpu {
     synced: Option<(u64, Colour)>,
     surface: Option<Surface>,
     surface_version: Option<u64>,
-    scan: Option<Scan>,
-    scan_version: Option<u64>,
+    /// A scan in the colours of its deviation.
+    scan: Mapped,
+    /// The part in the colours of its bodies.
+    pieces: Mapped,
     bent_plate: Option<Scan>,
-    /// The colours of its deviation, bound.
-    scan_binding: wgpu::BindGroup,
     solids: Growing,
 }
 
@@ -93,8 +93,7 @@ impl Gpu {
     pub(super) fn new(state: &RenderState) -> Self {
         let (device, queue) = (state.device.clone(), state.queue.clone());
         let layout = layout(&device);
-        let [map, scan_map] = std::array::from_fn(|_| colour_map(&device));
-        write_map(&queue, &scan_map, Colour::HeightError);
+        let map = colour_map(&device);
         let globals: [wgpu::Buffer; LOOKS] = std::array::from_fn(|_| {
             device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("globals"),
@@ -103,11 +102,14 @@ impl Gpu {
                 mapped_at_creation: false,
             })
         });
-        let [view, scan_view] = [&map, &scan_map].map(|map| map.create_view(&wgpu::TextureViewDescriptor::default()));
-        let bindings = std::array::from_fn(|i| bind(&device, &layout, &globals[i], &view));
+        let bindings = std::array::from_fn(|i| bind(&device, &layout, &globals[i], &map));
+        let [scan, pieces] = [Colour::HeightError, Colour::Body].map(|colour| {
+            let map = colour_map(&device);
+            write_map(&queue, &map, colour);
+            Mapped::new(bind(&device, &layout, &globals[0], &map))
+        });
         Self {
             software: state.adapter.get_info().device_type == wgpu::DeviceType::Cpu,
-            scan_binding: bind(&device, &layout, &globals[0], &scan_view),
             fans: [fan(&device, 10, &[2]), fan(&device, 20, &[1, 2])],
             device,
             queue,
@@ -121,8 +123,8 @@ impl Gpu {
             synced: None,
             surface: None,
             surface_version: None,
-            scan: None,
-            scan_version: None,
+            scan,
+            pieces,
             bent_plate: None,
             solids: Growing::new("plate, torch and arm"),
         }
@@ -151,10 +153,8 @@ impl Gpu {
             self.map_of = Some(style.colour);
             write_map(&self.queue, &self.map, style.colour);
         }
-        if self.scan_version != Some(scene.scan_version()) {
-            self.scan_version = Some(scene.scan_version());
-            self.scan = scene.scan().and_then(|scan| Scan::new(&self.device, &scan.points, &scan.triangles));
-        }
+        self.scan.sync(&self.device, scene.scan_version(), scene.scan());
+        self.pieces.sync(&self.device, scene.pieces_version(), scene.pieces().map(|pieces| &**pieces));
     }
 
     /// Renders a picture.
@@ -281,8 +281,9 @@ fn bind(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     globals: &wgpu::Buffer,
-    map: &wgpu::TextureView,
+    map: &wgpu::Texture,
 ) -> wgpu::BindGroup {
+    let map = &map.create_view(&wgpu::TextureViewDescriptor::default());
     device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("3-D view"),
         layout,

@@ -1,7 +1,8 @@
 //! What has a colour of its own at each of its points, on the graphics card: a scan, as triangles or, where it has none, as
-//! points; the bent plate.
+//! points; the bodies of the part; the bent plate.
 
 use super::pipelines::Pipelines;
+use crate::view3d::scanned::Scanned;
 use eframe::egui_wgpu::wgpu::{self, util::DeviceExt as _};
 
 /// Coloured points on the graphics card, and the triangles between them.
@@ -46,6 +47,43 @@ impl Scan {
                 pass.set_vertex_buffer(0, self.points.slice(..));
                 pass.draw(0..4, 0..self.count);
             }
+        }
+    }
+}
+
+/// Coloured points by a colour map of their own.
+#[derive(Debug)]
+pub(super) struct Mapped {
+    binding: wgpu::BindGroup,
+    points: Option<Scan>,
+    version: Option<u64>,
+}
+
+impl Mapped {
+    /// Nothing yet; the colour map is bound.
+    pub(super) fn new(binding: wgpu::BindGroup) -> Self {
+        Self { binding, points: None, version: None }
+    }
+
+    /// Sends points where they have changed.
+    pub(super) fn sync(&mut self, device: &wgpu::Device, version: u64, scanned: Option<&Scanned>) {
+        if self.version != Some(version) {
+            self.version = Some(version);
+            self.points = scanned.and_then(|scanned| Scan::new(device, &scanned.points, &scanned.triangles));
+        }
+    }
+
+    /// Whether there is anything to draw.
+    pub(super) fn is_there(&self) -> bool {
+        self.points.is_some()
+    }
+
+    /// Draws it, and then binds the usual colours.
+    pub(super) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, pipelines: &Pipelines, usual: &wgpu::BindGroup) {
+        if let Some(points) = &self.points {
+            pass.set_bind_group(0, &self.binding, &[]);
+            points.draw(pass, pipelines);
+            pass.set_bind_group(0, usual, &[]);
         }
     }
 }

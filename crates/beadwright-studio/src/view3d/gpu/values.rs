@@ -92,6 +92,8 @@ fn values_of(layer: &LayerBeads, key: &ValueKey, supplied: Option<&[f32]>, out: 
         Colour::Order => out.extend((0..layer.len()).map(|i| (key.segments_before + i) as f32)),
         Colour::Time => out.extend(layer.ends.iter().map(|&end| (key.seconds_before + f64::from(end)) as f32)),
         Colour::HeightError => out.extend((0..layer.len()).map(|i| known(supplied, layer.piece(i)))),
+        // Bodies colour the part; beads have none of their own.
+        Colour::Body => out.extend(std::iter::repeat_n(MISSING, layer.len())),
         Colour::OffLevel | Colour::Movement => out.extend((0..layer.len()).map(|i| known(supplied, i))),
         Colour::Temperature => {
             for (i, pass) in layer.passes().iter().enumerate() {

@@ -3,6 +3,7 @@
 mod background;
 mod basic;
 mod compare;
+mod directions;
 mod distortion;
 mod edit;
 mod export;
