@@ -32,8 +32,6 @@ const BALANCED: f64 = 1e-4;
 #[derive(Debug, Clone)]
 pub struct Stack {
     grid: Grid,
-    /// Where its columns lie, mm.
-    across: Vec<f64>,
     settings: DepositSettings,
     /// Height of the metal, mm.
     top: Vec<f32>,
@@ -78,20 +76,9 @@ impl Stack {
     /// A bare plate below `bounds`.
     pub fn new(bounds: &Bounds, settings: DepositSettings) -> Self {
         let grid = Grid::covering(bounds, settings.nominal.bead.width, COARSER * settings.step);
-        let (points, across) = (grid.points(), (0..grid.columns).map(|column| grid.place(column, 0).x).collect());
+        let points = grid.points();
         let (top, wanted, swept) = (vec![0.0; points], vec![f32::NAN; points], vec![Swept::default(); points]);
-        Self {
-            grid,
-            across,
-            settings,
-            top,
-            wanted,
-            swept,
-            pieces: 1,
-            plate: None,
-            layer_height: None,
-            growth: Vec::new(),
-        }
+        Self { grid, settings, top, wanted, swept, pieces: 1, plate: None, layer_height: None, growth: Vec::new() }
     }
 
     /// The state after each layer, the lowest first, within that layer's outline.
@@ -210,17 +197,12 @@ impl Stack {
     /// piece widened by half a step on both sides.
     fn reached<F: Footprint>(&mut self, own: &Frame, wide: &Frame) -> Vec<Cell> {
         let (a, b) = (own.from.y, own.from.y + own.along.y * own.length);
-        let (mut cells, mut row_added) = (Vec::new(), Vec::new());
+        let mut cells = Vec::new();
         for row in self.grid.rows_between(a.min(b) - wide.a, a.max(b) + wide.a) {
-            let y = self.grid.place(0, row).y;
-            let Some((low, high, ..)) = wide.row(y) else { continue };
-            let columns = self.grid.columns_between(low, high);
-            // On its own, this loop becomes vector instructions.
-            row_added.clear();
-            row_added.extend(self.across[columns.clone()].iter().map(|&x| wide.height_of::<F>(DVec2::new(x, y))));
-            for (column, &added) in columns.zip(&row_added) {
-                let (place, at) = (DVec2::new(self.across[column], y), row * self.grid.columns + column);
-                let whole = wide.passed_over::<F>(place);
+            let Some((low, high, ..)) = wide.row(self.grid.place(0, row).y) else { continue };
+            for column in self.grid.columns_between(low, high) {
+                let (place, at) = (self.grid.place(column, row), row * self.grid.columns + column);
+                let (whole, added) = (wide.passed_over::<F>(place), wide.height_of::<F>(place));
                 if added <= 0.0 || whole <= 0.0 {
                     continue;
                 }
