@@ -34,9 +34,9 @@ impl<T: Send + 'static> Computing<T> {
         work: impl FnOnce(&Task) -> Result<T, String> + Send + 'static,
     ) -> Self {
         let progress = Arc::new(Mutex::new(Progress { done: 0.0, stage: whole }));
-        let (told, bell) = (progress.clone(), ctx.clone());
+        let (shown, bell) = (progress.clone(), ctx.clone());
         let task = Task::with_progress(move |stage, fraction| {
-            let mut now = told.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut now = shown.lock().unwrap_or_else(PoisonError::into_inner);
             now.stage = stage;
             if stage == whole {
                 now.done = fraction;

@@ -105,7 +105,7 @@ fn directions_that_are_found_are_planned() {
 #[test]
 fn directions_that_are_offered_first_can_be_welded() {
     let profile = profile("cmt-steel-abb");
-    let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
+    let settings = Settings::usual(profile.bead.width);
     // A sheet 40 mm thick with an outline in x and z, mm, turned about z.
     let found = |outline: &[[f64; 2]], degrees: f64| -> (Mesh, Found) {
         let turn = DMat3::from_rotation_z(degrees.to_radians()) * DMat3::from_rotation_x(FRAC_PI_2);
@@ -157,7 +157,7 @@ fn directions_that_are_offered_first_can_be_welded() {
 #[test]
 fn branches_are_welded_in_an_order_in_which_the_torch_has_room() {
     let profile = profile("cmt-al2319-kuka");
-    let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
+    let settings = Settings::usual(profile.bead.width);
     for turned in [0.0, 64.0] {
         let mesh = tree(150.0, &[(90.0, turned, 50.0, 150.0), (90.0, turned + 20.0, 105.0, 60.0)]);
         let as_found = divisions(&mesh, settings, &Task::new()).unwrap().swap_remove(0);
@@ -178,7 +178,7 @@ fn branches_are_welded_in_an_order_in_which_the_torch_has_room() {
 #[test]
 fn a_branch_takes_no_metal_from_behind_its_carrier() {
     let profile = profile("cmt-al2319-kuka");
-    let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
+    let settings = Settings::usual(profile.bead.width);
     for turned in [0.0_f64, 64.0] {
         let mesh = tree(150.0, &[(40.0, turned, 90.0, 90.0), (90.0, turned + 180.0, 40.0, 100.0)]);
         let division = divisions(&mesh, settings, &Task::new()).unwrap().swap_remove(0);
@@ -198,7 +198,7 @@ fn a_branch_takes_no_metal_from_behind_its_carrier() {
 fn the_page_of_divisions_shows_all_bodies() {
     let mesh = tree(150.0, &[(90.0, 0.0, 50.0, 90.0), (60.0, 150.0, 80.0, 90.0)]);
     let profile = profile("cmt-al2319-kuka");
-    let settings = Settings { lean: 45.0, tilt: 90.0, bead: profile.bead.width };
+    let settings = Settings::usual(profile.bead.width);
     let part = imported(mesh.clone());
     let found = untried("tree <1>", &part, settings, &Task::new()).unwrap();
     let html = page::page("tree <1>", &mesh, &found).html();
