@@ -4,6 +4,7 @@ use crate::common;
 
 use beadwright::bead::{Bead, Law, Section};
 use beadwright::deposit::{Figures, Judge};
+use beadwright::fill::one_loop::squares::Squares;
 use beadwright::fill::{Fill, FillSettings, Path, StrategyName};
 use beadwright::layer::Layer;
 use beadwright::planar::{DVec2, Join, Polygon, Region, Ring, polyline};
@@ -444,4 +445,25 @@ fn a_neck_beside_a_hole_has_one_bead() {
             assert_eq!(way.windows(2).filter(|ends| across(ends)).count(), 1, "{place}");
         }
     }
+}
+
+#[test]
+fn squares_find_every_point_near_a_place() {
+    // Points in no order, from −1 to 1 times 50 mm; some places lie far beyond them.
+    let part = |k: usize, by: f64| 100.0 * (k as f64 * by).fract() - 50.0;
+    let points: Vec<DVec2> = (0..500).map(|k| DVec2::new(part(k, 0.618_034), part(k, 0.754_878))).collect();
+    let places = (0..200).map(|k| DVec2::new(part(k, 0.414_214), part(k, 0.732_051)) * 1.3);
+    for side in [3.0, 11.0, 400.0] {
+        let squares = Squares::of(&points, side);
+        for place in places.clone() {
+            let mut found: Vec<usize> = squares.near(place).collect();
+            found.sort_unstable();
+            assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "none twice");
+            let far = |i: &usize| (points[*i] - place).abs().max_element() >= 2.0 * side;
+            assert!(!found.iter().any(far), "{place} with squares of {side} mm");
+            let near = |i: &usize| points[*i].distance(place) <= side;
+            assert!((0..points.len()).filter(near).all(|i| found.contains(&i)), "{place} with squares of {side} mm");
+        }
+    }
+    assert_eq!(Squares::of(&[], 3.0).near(DVec2::ZERO).count(), 0);
 }

@@ -32,7 +32,10 @@ impl Rim {
     /// inside the outline.
     pub(super) fn shift(&self, from: DVec2, planned: f64, laid: f64) -> DVec2 {
         let most = INWARDS * (laid - planned) / 2.0;
-        let Some(foot) = self.foot(from).filter(|_| most > NOTHING) else { return DVec2::ZERO };
+        if most <= NOTHING || !self.is_near(from, laid / 2.0) {
+            return DVec2::ZERO;
+        }
+        let Some(foot) = self.foot(from) else { return DVec2::ZERO };
         let before = from.distance(foot);
         let wanted = (laid / 2.0 - before).min(most);
         let mut at = from;
@@ -44,6 +47,11 @@ impl Rim {
         }
         let gain = self.foot(at).map_or(0.0, |after| at.distance(after) - before);
         if gain > GAIN * wanted { at - from } else { DVec2::ZERO }
+    }
+
+    /// Whether the outline comes nearer to `p` than a distance, mm: quickly answered where it is far away.
+    fn is_near(&self, p: DVec2, distance: f64) -> bool {
+        self.0.locate_within_distance(p.to_array(), distance * distance).next().is_some()
     }
 
     /// The point of the outline nearest to `p`.

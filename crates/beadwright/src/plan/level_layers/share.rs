@@ -200,10 +200,15 @@ fn strips<'a>(
     for (index, piece) in pieces.enumerate() {
         let (a, b) = (piece.from.truncate(), piece.to.truncate());
         let (low, high) = (a.min(b) - reach, a.max(b) + reach);
+        let (ab, square) = (b - a, a.distance_squared(b));
+        let part = if square > 0.0 { ab / square } else { DVec2::ZERO };
+        let columns = grid.columns_between(low.x, high.x);
         for row in grid.rows_between(low.y, high.y) {
-            for column in grid.columns_between(low.x, high.x) {
-                let distance = planar::polyline::distance_squared_to_segment(grid.place(column, row), a, b);
-                let known = &mut nearest[row * grid.columns + column];
+            let known = &mut nearest[row * grid.columns..][columns.clone()];
+            let first = grid.place(columns.start, row) - a;
+            for (k, known) in known.iter_mut().enumerate() {
+                let p = DVec2::new(first.x + k as f64 * step, first.y);
+                let distance = p.distance_squared(ab * p.dot(part).clamp(0.0, 1.0));
                 if distance < known.0 {
                     *known = (distance, index);
                 }

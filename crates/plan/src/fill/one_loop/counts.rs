@@ -5,9 +5,9 @@
 
 use super::LoopSettings;
 use super::room::Room;
-use glam::{DVec2, I64Vec2};
+use super::squares::Squares;
+use glam::DVec2;
 use std::cmp::Reverse;
-use std::collections::HashMap;
 
 /// Neighbours within this many stepovers vote.
 const SIGHT: f64 = 1.2;
@@ -25,7 +25,8 @@ pub fn counts(room: &Room, settings: &LoopSettings) -> Vec<u32> {
     let rounded = |&q: &f64| if q < LEAST_ROOM { 0 } else { ((q + 0.5).floor() as u32).max(1) };
     let mut counts: Vec<u32> = wanted.iter().map(rounded).collect();
     let places: Vec<DVec2> = room.middles.iter().map(|middle| room.lattice.place_of(middle.point)).collect();
-    let neighbours = Neighbours::of(&places, SIGHT * settings.stepover);
+    let sight = SIGHT * settings.stepover;
+    let squares = Squares::of(&places, sight);
     let (low, high) = settings.width_ratios();
     let fits = |wanted: f64, count: u32| {
         let width = wanted / f64::from(count);
@@ -35,10 +36,13 @@ pub fn counts(room: &Room, settings: &LoopSettings) -> Vec<u32> {
         let before = counts.clone();
         for (i, count) in counts.iter_mut().enumerate() {
             let mut votes: Vec<(u32, usize)> = Vec::new();
-            neighbours.visit(places[i], |j| match votes.iter_mut().find(|(count, _)| *count == before[j]) {
-                Some((_, number)) => *number += 1,
-                None => votes.push((before[j], 1)),
-            });
+            let seen = |&j: &usize| places[j].distance_squared(places[i]) <= sight * sight;
+            for j in squares.near(places[i]).filter(seen) {
+                match votes.iter_mut().find(|(count, _)| *count == before[j]) {
+                    Some((_, number)) => *number += 1,
+                    None => votes.push((before[j], 1)),
+                }
+            }
             // The smaller count wins a tie.
             let winner = votes.iter().max_by_key(|(count, number)| (*number, Reverse(*count)));
             if let Some(&(winner, _)) = winner.filter(|(winner, _)| fits(wanted[i], *winner)) {
@@ -47,36 +51,4 @@ pub fn counts(room: &Room, settings: &LoopSettings) -> Vec<u32> {
         }
     }
     counts
-}
-
-/// Points sorted into square cells as wide as the search radius.
-struct Neighbours<'a> {
-    places: &'a [DVec2],
-    reach: f64,
-    cells: HashMap<I64Vec2, Vec<usize>>,
-}
-
-impl<'a> Neighbours<'a> {
-    fn of(places: &'a [DVec2], reach: f64) -> Self {
-        let mut cells: HashMap<I64Vec2, Vec<usize>> = HashMap::new();
-        for (i, &place) in places.iter().enumerate() {
-            cells.entry(cell(place, reach)).or_default().push(i);
-        }
-        Self { places, reach, cells }
-    }
-
-    fn visit(&self, place: DVec2, mut visit: impl FnMut(usize)) {
-        let home = cell(place, self.reach);
-        for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
-            for &j in self.cells.get(&(home + I64Vec2::new(dx, dy))).into_iter().flatten() {
-                if self.places[j].distance_squared(place) <= self.reach * self.reach {
-                    visit(j);
-                }
-            }
-        }
-    }
-}
-
-fn cell(place: DVec2, size: f64) -> I64Vec2 {
-    (place / size).floor().as_i64vec2()
 }

@@ -7,8 +7,9 @@
 use super::LoopSettings;
 use super::line::Line;
 use super::room::Room;
+use super::squares::Squares;
 use super::tangles::Mend;
-use glam::{DVec2, I64Vec2};
+use glam::DVec2;
 
 /// Neighbouring beads overlap by this many bead widths.
 const OVERLAP: f64 = 0.028;
@@ -137,14 +138,12 @@ impl Sight {
     /// Distance to the next bead or the outline on the left and on the right, at most `reach` (mm).
     fn free(&self, pieces: &Pieces, room: &Room, reach: f64, settings: &LoopSettings) -> [Free; 2] {
         let mut free = [reach; 2];
-        pieces.near(self.from, |piece| {
-            if !self.is_own(piece, pieces, settings) {
-                for edge in self.edges(piece).into_iter().flatten() {
-                    let side = usize::from(edge.middle < 0.0);
-                    free[side] = free[side].min((edge.middle.abs() - edge.depth).max(0.0));
-                }
+        for piece in pieces.near(self.from).filter(|piece| !self.is_own(piece, pieces, settings)) {
+            for edge in self.edges(piece).into_iter().flatten() {
+                let side = usize::from(edge.middle < 0.0);
+                free[side] = free[side].min((edge.middle.abs() - edge.depth).max(0.0));
             }
-        });
+        }
         let margin = 5e-4 * settings.bead_width;
         [(free[0], self.normal), (free[1], -self.normal)].map(|(free, way)| {
             let outline = self.to_outline(way, free, room, settings);
@@ -205,16 +204,11 @@ struct Piece {
     along: f64,
 }
 
-/// All pieces, in square grid cells.
+/// All pieces, and where they lie.
 struct Pieces {
     pieces: Vec<Piece>,
     lengths: Vec<f64>,
-    cell: f64,
-    low: I64Vec2,
-    size: I64Vec2,
-    /// First place of each cell in `order`, and one past the last.
-    starts: Vec<u32>,
-    order: Vec<u32>,
+    squares: Squares,
 }
 
 impl Pieces {
@@ -229,38 +223,14 @@ impl Pieces {
             }
             lengths.push(along);
         }
-        // Half a bead, a gap and half of the widest bead fit into a cell.
-        let cell = settings.bead_width * (0.5 + REACH) + settings.width_limits.1;
-        let cell_of = |piece: &Piece| ((piece.from + piece.to) / (2.0 * cell)).floor().as_i64vec2();
-        let low = pieces.iter().map(cell_of).reduce(|a, b| a.min(b)).unwrap_or_default();
-        let high = pieces.iter().map(cell_of).reduce(|a, b| a.max(b)).unwrap_or_default();
-        let size = high - low + 1;
-        let index = |piece: &Piece| {
-            let cell = cell_of(piece) - low;
-            (cell.y * size.x + cell.x) as usize
-        };
-        let mut starts = vec![0_u32; (size.x * size.y) as usize + 1];
-        pieces.iter().for_each(|piece| starts[index(piece) + 1] += 1);
-        (1..starts.len()).for_each(|i| starts[i] += starts[i - 1]);
-        let (mut next, mut order) = (starts.clone(), vec![0_u32; pieces.len()]);
-        for (number, piece) in (0..).zip(&pieces) {
-            let place = &mut next[index(piece)];
-            order[*place as usize] = number;
-            *place += 1;
-        }
-        Self { pieces, lengths, cell, low, size, starts, order }
+        let middles: Vec<DVec2> = pieces.iter().map(|piece| (piece.from + piece.to) / 2.0).collect();
+        // Half a bead, a gap and half of the widest bead fit into a square.
+        let squares = Squares::of(&middles, settings.bead_width * (0.5 + REACH) + settings.width_limits.1);
+        Self { pieces, lengths, squares }
     }
 
-    /// Visits the pieces around a place.
-    fn near(&self, p: DVec2, mut visit: impl FnMut(&Piece)) {
-        let home = (p / self.cell).floor().as_i64vec2() - self.low;
-        let (left, right) = ((home.x - 1).max(0), (home.x + 1).min(self.size.x - 1));
-        for y in (home.y - 1).max(0)..=(home.y + 1).min(self.size.y - 1) {
-            let row = y * self.size.x;
-            let range = self.starts[(row + left) as usize]..self.starts[(row + right) as usize + 1];
-            for &i in &self.order[range.start as usize..range.end as usize] {
-                visit(&self.pieces[i as usize]);
-            }
-        }
+    /// The pieces around a place.
+    fn near(&self, p: DVec2) -> impl Iterator<Item = &Piece> {
+        self.squares.near(p).map(|i| &self.pieces[i])
     }
 }

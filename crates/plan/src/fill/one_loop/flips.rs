@@ -9,8 +9,8 @@
 use super::LoopSettings;
 use super::rings::{POINTS_PER_STEPOVER, Ring};
 use super::room::Room;
-use glam::{DVec2, I64Vec2};
-use std::collections::HashMap;
+use super::squares::Squares;
+use glam::DVec2;
 
 /// Rings farther apart than this many stepovers are not neighbours.
 const FARTHEST: f64 = 1.6;
@@ -52,17 +52,19 @@ pub struct Joined {
 /// Joins rings by a spanning tree of flips.
 pub fn join(rings: &[Ring], room: &Room, settings: &LoopSettings) -> Joined {
     let points = Points::of(rings);
+    let squares = Squares::of(&points.at, FARTHEST * settings.stepover);
     let mut chosen: Vec<&Flip> = Vec::new();
     let mut groups = Groups::new(rings.len());
     let mut taken = vec![false; points.at.len()];
-    let mut flips = candidates(&points, room, settings);
+    let mut flips = candidates(&points, &squares, settings);
     flips.sort_by(|a, b| a.score.total_cmp(&b.score).then_with(|| a.stretches.cmp(&b.stretches)));
     // First well apart, then wherever possible.
     for apart in [APART * settings.stepover, 0.0] {
         for flip in &flips {
             let free = || flip.stretches.iter().flatten().all(|&point| !taken[point]);
             let far = |other: &&Flip| other.place.distance(flip.place) >= apart;
-            if groups.are_apart(flip.rings) && free() && chosen.iter().all(far) {
+            let open = || flip.is_open(&points, room, &squares, settings);
+            if groups.are_apart(flip.rings) && free() && chosen.iter().all(far) && open() {
                 groups.join(flip.rings);
                 points.take(flip, &mut taken);
                 chosen.push(flip);
@@ -182,37 +184,9 @@ fn replace(beside: &mut [[Option<usize>; 2]], point: usize, old: Option<usize>, 
     }
 }
 
-/// Points, binned in squares.
-struct Squares {
-    side: f64,
-    points: HashMap<I64Vec2, Vec<usize>>,
-}
-
-impl Squares {
-    fn of(points: &[DVec2], side: f64) -> Self {
-        let mut squares = Self { side, points: HashMap::new() };
-        for (i, &p) in points.iter().enumerate() {
-            squares.points.entry(squares.square(p)).or_default().push(i);
-        }
-        squares
-    }
-
-    fn square(&self, p: DVec2) -> I64Vec2 {
-        (p / self.side).floor().as_i64vec2()
-    }
-
-    /// The points in the square of a position and in the squares around it.
-    fn near(&self, p: DVec2) -> impl Iterator<Item = usize> + '_ {
-        let home = self.square(p);
-        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| I64Vec2::new(dx, dy)));
-        around.flat_map(move |by| self.points.get(&(home + by)).into_iter().flatten().copied())
-    }
-}
-
 /// A flip at every second point of every ring with each neighbour.
-fn candidates(points: &Points, room: &Room, settings: &LoopSettings) -> Vec<Flip> {
+fn candidates(points: &Points, squares: &Squares, settings: &LoopSettings) -> Vec<Flip> {
     let reach = FARTHEST * settings.stepover;
-    let squares = Squares::of(&points.at, reach);
     let mut flips = Vec::new();
     let mut nearby: Vec<usize> = Vec::new();
     for (i, &p) in points.at.iter().enumerate().filter(|(i, _)| i.is_multiple_of(2)) {
@@ -225,8 +199,7 @@ fn candidates(points: &Points, room: &Room, settings: &LoopSettings) -> Vec<Flip
                 !own.contains(&points.ring[k]) && points.at[k].distance_squared(middle) < (BETWEEN * gap).powi(2)
             };
             if nearby.iter().find(between).is_none() {
-                flips
-                    .extend(flip(points, i, j, settings).filter(|flip| flip.is_free(points, room, &squares, settings)));
+                flips.extend(flip(points, i, j, settings));
             }
         }
     }
@@ -235,7 +208,7 @@ fn candidates(points: &Points, room: &Room, settings: &LoopSettings) -> Vec<Flip
 
 impl Flip {
     /// Whether its links stay inside, and cross no ring.
-    fn is_free(&self, points: &Points, room: &Room, squares: &Squares, settings: &LoopSettings) -> bool {
+    fn is_open(&self, points: &Points, room: &Room, squares: &Squares, settings: &LoopSettings) -> bool {
         let [a, b] = &self.stretches;
         let mut links = a.first().zip(b.first()).into_iter().chain(a.last().zip(b.last()));
         links.all(|(&i, &j)| {

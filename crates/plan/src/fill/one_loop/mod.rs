@@ -30,6 +30,7 @@ pub mod relax;
 pub mod rings;
 pub mod room;
 pub mod spiral;
+pub mod squares;
 pub mod tangles;
 
 use super::thin::tie::{TieSettings, tie};
