@@ -112,8 +112,12 @@ impl Planned<'_> {
     /// Writes the files and reports them; with `--json` it gives the totals instead.
     fn write(self, arguments: &Arguments, places: &[Place]) -> anyhow::Result<Option<serde_json::Value>> {
         let Self { name, profile, model, folder, mut files, summary, figures } = self;
-        let found =
-            remedy::findings(&summary, &model.repair().sentences(), files.check(&Task::new())?, remedy::words(profile));
+        let found = remedy::findings(
+            &summary,
+            &model.repair().sentences(),
+            files.check(&summary, &Task::new())?,
+            remedy::words(profile),
+        );
         let built = files.built();
         let written = files.finish(&summary, &model.repair())?;
         if arguments.json {

@@ -311,7 +311,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let own = model.notes().iter().cloned();
     summary.notes.splice(0..0, own.chain(divided).chain(faults).chain(note));
     summary.notes.extend(files.notes());
-    let found = remedy::findings(&summary, &model.repair().sentences(), files.check(&task)?, remedy::words(&profile));
+    let found =
+        remedy::findings(&summary, &model.repair().sentences(), files.check(&summary, &task)?, remedy::words(&profile));
     let (figures, totals, built) = (files.figures(), files.totals(), files.built());
     let written = files.finish(&summary, &model.repair())?;
 
@@ -418,9 +419,9 @@ impl<'a> Files<'a> {
     }
 
     /// What the checks find in the plan.
-    pub(crate) fn check(&mut self, task: &Task) -> anyhow::Result<&[Finding]> {
+    pub(crate) fn check(&mut self, summary: &Summary, task: &Task) -> anyhow::Result<&[Finding]> {
         let Some(files) = &mut self.files else { return Ok(&[]) };
-        Ok(files.check(task)?)
+        Ok(files.check(summary.grown.as_ref(), task)?)
     }
 
     /// Writes only the report, which shows the places at fault; returns its path.
@@ -478,6 +479,10 @@ impl Sink for Files<'_> {
             self.folder.extend(files.layer(&layer, judgement.as_ref()))?;
         }
         Ok(())
+    }
+
+    fn asks_how_it_grows(&self) -> bool {
+        self.judge.is_some()
     }
 }
 

@@ -65,7 +65,7 @@ pub(crate) fn save(planned: &Planned, wanted: &Wanted<'_>, task: &Task) -> Resul
 pub(crate) fn findings(planned: &Planned, task: &Task) -> Result<Vec<Finding>, Cancelled> {
     let (layers, profile) = (&planned.layers[..], &planned.profile);
     let settings = plan::deposit_settings_over(profile, planned.part.bounds());
-    let judged = check::judge_layers(layers, profile, Judge::new(settings).without_patches(), task, |_, _| ())?;
+    let judged = check::judge_layers(layers, profile, Judge::new(settings).without_patches(), None, task, |_, _| ())?;
     let found = check::grouped(&check::check_figures(layers, profile, judged));
     let mut summary = planned.summary.clone();
     summary.notes.splice(0..0, planned.part.notes().iter().chain(&planned.note).cloned());

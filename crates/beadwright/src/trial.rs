@@ -80,7 +80,7 @@ impl PlatePlan {
         self.layers.iter().for_each(|layer| chunks.extend(files.layer(layer, None)));
         let (metrics, forbidden) = (self.metrics(), self.profile.forbidden());
         let (warnings, notes) = (Warnings::default(), files.notes());
-        let summary = Summary { metrics, warnings, notes, forbidden, blocked: Vec::new() };
+        let summary = Summary { metrics, warnings, notes, forbidden, blocked: Vec::new(), grown: None };
         chunks.extend(files.end(&summary, &RepairReport::default(), None)?);
         Ok(chunks)
     }

@@ -304,7 +304,7 @@ impl Frame {
         let settings = plan::deposit_settings(profile);
         let mut picture = None;
         let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
-        let judged = check::judge_layers(layers, profile, judge, task, |layer, judgement| {
+        let judged = check::judge_layers(layers, profile, judge, None, task, |layer, judgement| {
             if layer == 0 {
                 picture = judgement.picture;
             }

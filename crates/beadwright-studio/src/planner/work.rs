@@ -94,6 +94,7 @@ fn work(order: &Order, task: &Task, kept: &mut Cache, send: &(dyn Fn(Event) + Sy
     let mut summary = plan::plan_into(&order.project.part(), &*part, &profile, task, &mut layers)?;
     let layers = layers.layers;
     summary.notes.splice(0..0, part.notes().iter().cloned().chain(note));
+    let grown = summary.grown.take();
     send(Event::Planned(Box::new(summary)));
     let settings = plan::deposit_settings_over(&profile, part.bounds());
     let judge = Judge::new(settings).with_pictures(MAP_PIXELS);
@@ -101,7 +102,7 @@ fn work(order: &Order, task: &Task, kept: &mut Cache, send: &(dyn Fn(Event) + Sy
         let errors = errors(&layers[index], &judgement, &profile);
         send(Event::Judged(index, Arc::new(judgement), errors));
     };
-    let judged = check::judge_layers(&layers, &profile, judge, task, each)?;
+    let judged = check::judge_layers(&layers, &profile, judge, grown, task, each)?;
     let total = judged.total;
     send(Event::Checked(total, check::check_figures(&layers, &profile, judged)));
     Ok(())
@@ -143,6 +144,10 @@ impl Sink for Layers<'_> {
         self.layers.push(layer.clone());
         (self.send)(Event::Layer(layer, beads));
         Ok(())
+    }
+
+    fn asks_how_it_grows(&self) -> bool {
+        true
     }
 }
 

@@ -173,7 +173,7 @@ impl Adapted {
         }
         let notes = sentences.into_iter().chain(files.notes()).collect();
         let (warnings, forbidden) = (Warnings::default(), profile.forbidden());
-        let summary = Summary { metrics, warnings, notes, forbidden, blocked: Vec::new() };
+        let summary = Summary { metrics, warnings, notes, forbidden, blocked: Vec::new(), grown: None };
         take(files.end(&summary, &RepairReport::default(), None)?)
     }
 }

@@ -34,7 +34,8 @@ mod wire_balance;
 
 pub use rehearsal::rehearse;
 
-use crate::deposit::{DepositSettings, Figures, Judge, Judgement, Stack, stack::Growth};
+use crate::deposit::stack::{Grown, Growth, Stack};
+use crate::deposit::{DepositSettings, Figures, Judge, Judgement};
 use crate::finding::{Finding, Severity, as_sentence};
 use crate::layer::Layer;
 use crate::pass::PassKind;
@@ -45,7 +46,6 @@ use crate::task::{Cancelled, Stage, Task};
 use crate::warning::{WarningKind, Warnings};
 use glam::DVec3;
 use planar::Bounds;
-use serde::Serialize;
 use std::borrow::Borrow;
 use std::collections::BTreeSet;
 
@@ -141,24 +141,8 @@ pub struct LayerFigures {
     pub grown: Grown,
 }
 
-/// How a part grows, bead laid on bead.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Grown {
-    /// After each layer, over the area of that layer.
-    pub layers: Vec<Growth>,
-    /// At the end of each body, over its whole area; `None` where nothing is laid, or where layers do not lie over one
-    /// another once they are unrolled.
-    pub built: Vec<Option<Growth>>,
-}
-
-impl Grown {
-    /// The final growth of the body that ends farthest from its plan.
-    pub fn worst(&self) -> Option<Growth> {
-        self.built.iter().flatten().copied().min_by(|a, b| a.within.total_cmp(&b.within))
-    }
-}
-
 /// Judges a plan layer by layer, as it is welded with a profile, and passes each layer's index and judgement to `each`.
+/// How the part grows is computed, unless it is `known` from planning ([`Summary::grown`]).
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -166,6 +150,7 @@ pub fn judge_layers<L: Borrow<Layer>>(
     layers: &[L],
     profile: &Profile,
     mut judge: Judge,
+    known: Option<Grown>,
     task: &Task,
     mut each: impl FnMut(usize, Judgement),
 ) -> Result<LayerFigures, Cancelled> {
@@ -177,7 +162,7 @@ pub fn judge_layers<L: Borrow<Layer>>(
         figures.push(judgement.as_ref().map_or(Figures::default(), |judgement| judgement.figures));
         judgement.into_iter().for_each(|judgement| each(i, judgement));
     }
-    let grown = grown(layers, profile, *judge.settings(), task)?;
+    let grown = known.map_or_else(|| grown(layers, profile, *judge.settings(), task), Ok)?;
     Ok(LayerFigures { figures, total: *judge.total(), grown })
 }
 
@@ -259,7 +244,7 @@ pub fn check<L: Borrow<Layer>>(
     settings: DepositSettings,
     task: &Task,
 ) -> Result<Vec<Finding>, Cancelled> {
-    let judged = judge_layers(layers, profile, Judge::new(settings), task, |_, _| ())?;
+    let judged = judge_layers(layers, profile, Judge::new(settings), None, task, |_, _| ())?;
     Ok(check_figures(layers, profile, judged))
 }
 

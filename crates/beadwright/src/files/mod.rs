@@ -17,7 +17,8 @@ pub use folder::{Folder, FolderError, Written, write_file};
 pub use own_folder::posts;
 
 use crate::check::{self, LayerFigures};
-use crate::deposit::{Figures, Judgement, stack::Growth};
+use crate::deposit::stack::{Grown, Growth};
+use crate::deposit::{Figures, Judgement};
 use crate::dialect::own::Own;
 use crate::dialect::{Chunk, DialectError, Job, Writer, writer};
 use crate::finding::{Finding, Words};
@@ -283,14 +284,19 @@ impl PlanFiles {
 
     /// What the checks find, once all layers are written; nothing in a plan that was not judged by the deposit model.
     ///
+    /// How the part grows is computed, unless it is `known` from planning ([`Summary::grown`]).
+    ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn check(&mut self, task: &Task) -> Result<&[Finding], Cancelled> {
+    pub fn check(&mut self, known: Option<&Grown>, task: &Task) -> Result<&[Finding], Cancelled> {
         if self.found.is_none() {
             let (layers, figures) = (std::mem::take(&mut self.layers), std::mem::take(&mut self.figures));
             if !layers.is_empty() {
                 let settings = plan::deposit_settings_over(&self.profile, self.part);
-                let grown = check::grown(&layers, &self.profile, settings, task)?;
+                let grown = match known {
+                    Some(grown) => grown.clone(),
+                    None => check::grown(&layers, &self.profile, settings, task)?,
+                };
                 self.built = grown.worst();
                 let judged = LayerFigures { figures, grown, ..LayerFigures::default() };
                 self.all = check::check_figures(&layers, &self.profile, judged);
@@ -311,7 +317,7 @@ impl PlanFiles {
         total: Option<&Figures>,
     ) -> Result<Vec<Chunk>, DialectError> {
         // Nobody can cancel this task.
-        let found = self.check(&Task::new()).map(<[Finding]>::to_vec).unwrap_or_default();
+        let found = self.check(summary.grown.as_ref(), &Task::new()).map(<[Finding]>::to_vec).unwrap_or_default();
         let totals = self.totals().cloned();
         let mut chunks = self.programs.end();
         if let Some(failure) = self.programs.failure() {

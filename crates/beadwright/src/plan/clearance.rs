@@ -126,4 +126,8 @@ impl<S: Sink> Sink for Watch<'_, S> {
         self.clearance.layer(&layer, &self.torch, self.width);
         self.sink.layer(layer)
     }
+
+    fn asks_how_it_grows(&self) -> bool {
+        self.sink.asks_how_it_grows()
+    }
 }

@@ -84,6 +84,8 @@ pub(super) struct Emitter<'a, S> {
     pub(super) support: Support,
     /// What has been built so far, if metal is shared out over it.
     pub(super) grown: Option<Stack>,
+    /// Whether what has been built is compared with the plan.
+    pub(super) asks_how_it_grows: bool,
     /// Outlines of the welded islands of the layer below.
     pub(super) below: Vec<Polygon>,
     /// Outlines of the layer below that one.
@@ -153,7 +155,12 @@ impl<S: Sink> Emitter<'_, S> {
         }
         self.metrics.add(&layer);
         if let Some(grown) = &mut self.grown {
-            grown.weld(&settings.welded.welded(&layer).passes);
+            let welded = settings.welded.welded(&layer);
+            if self.asks_how_it_grows {
+                grown.add(&welded);
+            } else {
+                grown.weld(&welded.passes);
+            }
         }
         self.sink.layer(layer)
     }

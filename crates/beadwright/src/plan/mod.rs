@@ -389,6 +389,7 @@ fn run<S: Sink + Send>(
         let (bounds, layers) = judged::grid(sharing.height, (extent.low, extent.high));
         Stack::new(&bounds, sharing.deposit.fitted_to(&bounds, layers))
     });
+    let asks_how_it_grows = sink.asks_how_it_grows();
     let mut emitter = Emitter {
         settings,
         sink,
@@ -401,6 +402,7 @@ fn run<S: Sink + Send>(
         below: Vec::new(),
         support: Support::on(footing),
         grown,
+        asks_how_it_grows,
         before: Vec::new(),
         below_middle: 0.0,
         built: 0.0,
@@ -424,7 +426,8 @@ fn run<S: Sink + Send>(
         }
         ready = filled?;
     }
-    let Emitter { metrics, warnings, points, has_helix, memory, .. } = emitter;
+    let Emitter { metrics, warnings, points, has_helix, memory, grown, .. } = emitter;
+    let grown = grown.filter(|_| asks_how_it_grows).as_ref().map(Stack::grown);
     let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
     let forbidden = settings.forbidden.iter().cloned().chain(forbids).collect();
     let large = settings.limits.max_plan_points.filter(|most| points > *most as usize);
@@ -433,7 +436,7 @@ fn run<S: Sink + Send>(
     let open = (asked && !has_helix).then(|| NO_HELIX.to_owned());
     let balanced = settings.filling.laying.order.balance.map(|_| balanced(memory.detour(), settings.weld.travel.speed));
     let notes = large.into_iter().chain(open).chain(balanced).chain(settings.notes.iter().cloned()).collect();
-    Ok(Summary { metrics, warnings, notes, forbidden, blocked: Vec::new() })
+    Ok(Summary { metrics, warnings, notes, forbidden, blocked: Vec::new(), grown })
 }
 
 /// What it costs to keep heat around the middle of the plate: `detour` is how much longer travels became, mm, at a speed in mm/s.

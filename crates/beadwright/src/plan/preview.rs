@@ -62,6 +62,7 @@ pub fn preview(
         support: Support::default(),
         grown: None,
         below: Vec::new(),
+        asks_how_it_grows: false,
         before: Vec::new(),
         below_middle: 0.0,
         built,

@@ -4,6 +4,7 @@ use super::MAX_LAYERS;
 use crate::bead::wall::WallError;
 use crate::chart::warp::WarpError;
 use crate::deposit::Figures;
+use crate::deposit::stack::Grown;
 use crate::layer::{Extent, Layer};
 use crate::metrics::Metrics;
 use crate::model::wall_curves::Sides;
@@ -52,6 +53,10 @@ pub struct Summary {
     /// welded one after another nor a part that is there already are among them.
     #[serde(default)]
     pub blocked: Vec<Blocked>,
+    /// How the part grows, where planning finds out: in level layers of one body, whose metal is shared out, for sinks that
+    /// [ask for it](Sink::asks_how_it_grows).
+    #[serde(skip)]
+    pub grown: Option<Grown>,
 }
 
 /// A body that cannot be welded once another is finished: the torch would hit it.
@@ -209,6 +214,11 @@ pub trait Sink {
     /// # Errors
     /// Whatever the sink fails with; planning then stops.
     fn layer(&mut self, layer: Layer) -> Result<(), Self::Error>;
+
+    /// Whether planning should compare the metal with the plan after each layer ([`Summary::grown`]).
+    fn asks_how_it_grows(&self) -> bool {
+        false
+    }
 }
 
 /// Keeps the layers of a plan.

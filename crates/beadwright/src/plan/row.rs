@@ -75,7 +75,7 @@ impl<'a, S: Sink> Row<'a, S> {
         notes.splice(0..0, several.then(|| format!("{how}: {}.", ranges.join(", "))));
         let forbids = warnings.summaries().filter(|w| w.kind.forbids()).map(WarningSummary::sentence);
         let forbidden = forbids.chain(self.forbidden).collect();
-        Summary { metrics, warnings, notes, forbidden, blocked: Vec::new() }
+        Summary { metrics, warnings, notes, forbidden, blocked: Vec::new(), grown: None }
     }
 }
 

@@ -49,8 +49,14 @@ fn planned(mesh: &Mesh, profile: &Profile) -> Plan {
 /// Figures of the worst layer: void, overfill and metal outside, %.
 fn worst(plan: &Plan, profile: &Profile) -> [f64; 3] {
     let settings = plan::deposit_settings(profile);
-    let figures =
-        check::judge_layers(&plan.layers, profile, beadwright::deposit::Judge::new(settings), &Task::new(), |_, _| {});
+    let figures = check::judge_layers(
+        &plan.layers,
+        profile,
+        beadwright::deposit::Judge::new(settings),
+        None,
+        &Task::new(),
+        |_, _| {},
+    );
     figures.unwrap().figures.iter().fold([0.0; 3], |[void, overfill, outside], layer| {
         [void.max(layer.void_percent()), overfill.max(layer.overfill_percent()), outside.max(layer.outside_percent())]
     })

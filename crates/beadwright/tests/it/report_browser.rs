@@ -272,7 +272,7 @@ fn judged(plan: &Plan, profile: &Profile) -> String {
     let mut report = Report::new(&plan.header, profile);
     let judge = Judge::new(plan::deposit_settings(profile));
     let take = |i: usize, judgement| report.layer(&plan.layers[i], Some(&judgement));
-    check::judge_layers(&plan.layers, profile, judge, &Task::new(), take).unwrap();
+    check::judge_layers(&plan.layers, profile, judge, None, &Task::new(), take).unwrap();
     report.finish(&plan.summary, &RepairReport::default(), &[], &[])
 }
 

@@ -7,10 +7,11 @@ use beadwright::fill::StrategyName;
 use beadwright::finding::Severity;
 use beadwright::layer::Layer;
 use beadwright::pass::{Along, Pass, PassKind};
-use beadwright::plan::{self, Plan, choice};
+use beadwright::plan::{self, Header, Plan, Sink, choice};
 use beadwright::{Judge, Model, Part, Placement, Profile, Task, check, example};
 use glam::{DQuat, DVec2, DVec3};
 use planar::{Bounds, Polygon, Ring};
+use std::convert::Infallible;
 
 const WIDTH: f64 = 6.0;
 const HEIGHT: f64 = 2.0;
@@ -187,6 +188,41 @@ fn planned(name: &str, degrees: f64, level: bool) -> (Plan, Profile) {
 fn built(plan: &Plan, profile: &Profile) -> Growth {
     let settings = plan::deposit_settings_over(profile, (plan.header.extent.low, plan.header.extent.high));
     check::grown(&plan.layers, profile, settings, &Task::new()).unwrap().worst().unwrap()
+}
+
+/// Keeps the layers, and wants to know how the part grows.
+struct Asking(Vec<Layer>);
+
+impl Sink for Asking {
+    type Error = Infallible;
+
+    fn begin(&mut self, _: &Header) -> Result<(), Infallible> {
+        Ok(())
+    }
+
+    fn layer(&mut self, layer: Layer) -> Result<(), Infallible> {
+        self.0.push(layer);
+        Ok(())
+    }
+
+    fn asks_how_it_grows(&self) -> bool {
+        true
+    }
+}
+
+#[test]
+fn the_growth_that_planning_finds_is_that_of_its_layers() {
+    for (name, allowance) in [("vase", 0.0), ("propeller", 0.0), ("cross", 12.0)] {
+        let mut profile = Profile::built_in("cmt-al2319-kuka").unwrap();
+        profile.fill.machining_allowance = allowance;
+        let part = example::find(name).unwrap().mesh();
+        let mut asking = Asking(Vec::new());
+        let summary = plan::plan_into(name, &part, &profile, &Task::new(), &mut asking).unwrap();
+        let settings = plan::deposit_settings_over(&profile, part.bounds());
+        let stacked = check::grown(&asking.0, &profile, settings, &Task::new()).unwrap();
+        assert_eq!(summary.grown, Some(stacked), "{name}");
+        assert_eq!(plan::plan(name, &part, &profile, &Task::new()).unwrap().summary.grown, None);
+    }
 }
 
 #[test]

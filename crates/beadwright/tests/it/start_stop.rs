@@ -522,7 +522,8 @@ fn the_deposit_model_sees_overlaps_and_leads() {
         let plan = plan::plan("cross", &mesh, profile, &Task::new()).unwrap();
         let settings = plan::deposit_settings(profile);
         let judged =
-            check::judge_layers(&plan.layers[..1], profile, Judge::new(settings), &Task::new(), |_, _| ()).unwrap();
+            check::judge_layers(&plan.layers[..1], profile, Judge::new(settings), None, &Task::new(), |_, _| ())
+                .unwrap();
         let mut metrics = Metrics::new(profile);
         metrics.add(&plan.layers[0]);
         (judged.total.deposited_volume, metrics.deposited_volume_mm3, judged.total.overfill_percent())

@@ -151,10 +151,13 @@ impl Piece {
 }
 
 /// [`Footprint`](super::stroke::Footprint) in single precision.
-trait Pool {
+pub(super) trait Pool {
     fn swept(inside: f32, u: f32) -> f32;
 
     fn whole(inside: f32) -> f32;
+
+    /// The fraction of the whole that is added while the pool moves from 0 to `u` half-chords, inside it.
+    fn share(u: f32) -> f32;
 
     /// What a long piece adds at `t` half bead widths from one of its ends, where `inside` = 1 − y².
     #[inline(always)]
@@ -175,6 +178,11 @@ impl Pool for Domed {
     fn whole(inside: f32) -> f32 {
         inside.max(0.0)
     }
+
+    #[inline(always)]
+    fn share(u: f32) -> f32 {
+        FRAC_1_PI * swept(u)
+    }
 }
 
 impl Pool for Even {
@@ -186,6 +194,11 @@ impl Pool for Even {
     #[inline(always)]
     fn whole(inside: f32) -> f32 {
         inside.max(0.0).sqrt()
+    }
+
+    #[inline(always)]
+    fn share(u: f32) -> f32 {
+        0.5 * u.clamp(-1.0, 1.0)
     }
 }
 
@@ -199,6 +212,11 @@ impl Pool for Rimmed {
     #[inline(always)]
     fn whole(inside: f32) -> f32 {
         if inside > 0.0 { 1.0 } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn share(u: f32) -> f32 {
+        FRAC_1_PI * asin(u.clamp(-1.0, 1.0))
     }
 }
 

@@ -8,7 +8,8 @@
 //! out: the model has neither remelting nor flow along a bead.
 
 use super::field::Grid;
-use super::stroke::{Domed, Even, Footprint, Frame, Rimmed, Stroke, strokes};
+use super::lay::Pool;
+use super::stroke::{Domed, Even, Frame, Rimmed, Stroke, strokes};
 use super::{DepositSettings, Mask, RIM};
 use crate::bead::{Bead, Section};
 use crate::layer::Layer;
@@ -26,7 +27,7 @@ const STRAIGHT: f64 = 0.95;
 /// Grid step of a stack over that of the layers.
 const COARSER: f64 = 2.0;
 /// Tolerance of a piece's metal against the metal fed, as a fraction.
-const BALANCED: f64 = 1e-4;
+const BALANCED: f32 = 1e-4;
 
 /// The metal built on the plate.
 #[derive(Debug, Clone)]
@@ -39,6 +40,10 @@ pub struct Stack {
     wanted: Vec<f32>,
     swept: Vec<Swept>,
     pieces: u32,
+    /// Height of the edge of the last piece of this pass, mm.
+    edge: Option<f32>,
+    /// The points under a piece; kept so that each need not make room anew.
+    under: Under,
     /// Underside of the lowest layer, mm.
     plate: Option<f64>,
     /// Thickness of the last layer, mm.
@@ -72,13 +77,43 @@ pub struct Growth {
     pub within: f64,
 }
 
+/// How a part grows, bead laid on bead.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Grown {
+    /// After each layer, over the area of that layer.
+    pub layers: Vec<Growth>,
+    /// At the end of each body, over its whole area; `None` where nothing is laid, or where layers do not lie over one
+    /// another once they are unrolled.
+    pub built: Vec<Option<Growth>>,
+}
+
+impl Grown {
+    /// The final growth of the body that ends farthest from its plan.
+    pub fn worst(&self) -> Option<Growth> {
+        self.built.iter().flatten().copied().min_by(|a, b| a.within.total_cmp(&b.within))
+    }
+}
+
 impl Stack {
     /// A bare plate below `bounds`.
     pub fn new(bounds: &Bounds, settings: DepositSettings) -> Self {
-        let grid = Grid::covering(bounds, settings.nominal.bead.width, COARSER * settings.step);
+        let margin = settings.nominal.bead.width + settings.machining_allowance.max(0.0);
+        let grid = Grid::covering(bounds, margin, COARSER * settings.step);
         let points = grid.points();
         let (top, wanted, swept) = (vec![0.0; points], vec![f32::NAN; points], vec![Swept::default(); points]);
-        Self { grid, settings, top, wanted, swept, pieces: 1, plate: None, layer_height: None, growth: Vec::new() }
+        Self {
+            grid,
+            settings,
+            top,
+            wanted,
+            swept,
+            pieces: 1,
+            edge: None,
+            under: Under::default(),
+            plate: None,
+            layer_height: None,
+            growth: Vec::new(),
+        }
     }
 
     /// The state after each layer, the lowest first, within that layer's outline.
@@ -93,6 +128,11 @@ impl Stack {
         let all = self.wanted.chunks(columns).enumerate().map(|(row, wanted)| (row, 0..wanted.len()));
         let any = self.wanted.iter().any(|wanted| !wanted.is_nan());
         self.layer_height.filter(|_| any).map(|height| self.compared(all, height))
+    }
+
+    /// The growth of the one body that was stacked.
+    pub fn grown(&self) -> Grown {
+        Grown { layers: self.growth.clone(), built: vec![self.built()] }
     }
 
     /// Height of the metal at the grid point nearest to a place, mm; `None` beyond the grid.
@@ -123,7 +163,7 @@ impl Stack {
     pub fn weld(&mut self, passes: &[Pass]) {
         for pass in passes {
             // A sweep never continues into the next pass.
-            self.pieces += 2;
+            (self.pieces, self.edge) = (self.pieces + 2, None);
             for piece in pieces(strokes(pass, &self.settings.nominal)) {
                 self.lay(&piece);
             }
@@ -180,91 +220,155 @@ impl Stack {
         // Grid points crossed by the edge of the bead belong to it partly.
         let wider = Bead { width: piece.bead.width + self.grid.step, ..piece.bead };
         let Some((own, wide)) = piece.frame().zip(Stroke { bead: wider, ..*piece }.frame()) else { return };
-        let cells = match own.section {
-            Section::Parabola => self.reached::<Domed>(&own, &wide),
-            Section::Ellipse => self.reached::<Even>(&own, &wide),
-            Section::Stadium => self.reached::<Rimmed>(&own, &wide),
-        };
-        let metal = piece.volume() / (self.grid.step * self.grid.step);
-        let Some(edge) = edge_height(&cells, &piece.bead, metal) else { return };
-        for cell in &cells {
-            self.top[cell.at] += (cell.part * (edge + cell.crown - cell.ground).max(0.0)) as f32;
+        let mut under = std::mem::take(&mut self.under);
+        match own.section {
+            Section::Parabola => self.reach::<Domed>(&own, &wide, &mut under),
+            Section::Ellipse => self.reach::<Even>(&own, &wide, &mut under),
+            Section::Stadium => self.reach::<Rimmed>(&own, &wide, &mut under),
         }
-        self.pieces += 1;
+        let metal = piece.volume() / (self.grid.step * self.grid.step);
+        if let Some(edge) = under.edge_height(&piece.bead, metal as f32, self.edge) {
+            under.points().for_each(|(at, part, rise)| self.top[at] += part * (edge + rise).max(0.0));
+            self.edge = Some(edge);
+            self.pieces += 1;
+        }
+        self.under = under;
     }
 
-    /// The grid points to which a piece brings metal, with the fraction of their bead that it sweeps; `wide` is the
+    /// Finds the grid points to which a piece brings metal, with the fraction of their bead that it sweeps; `wide` is the
     /// piece widened by half a step on both sides.
-    fn reached<F: Footprint>(&mut self, own: &Frame, wide: &Frame) -> Vec<Cell> {
+    fn reach<F: Pool>(&mut self, own: &Frame, wide: &Frame, under: &mut Under) {
+        under.clear();
+        let step = self.grid.step;
         let (a, b) = (own.from.y, own.from.y + own.along.y * own.length);
-        let mut cells = Vec::new();
         for row in self.grid.rows_between(a.min(b) - wide.a, a.max(b) + wide.a) {
             let Some((low, high, ..)) = wide.row(self.grid.place(0, row).y) else { continue };
-            for column in self.grid.columns_between(low, high) {
-                let (place, at) = (self.grid.place(column, row), row * self.grid.columns + column);
-                let (whole, added) = (wide.passed_over::<F>(place), wide.height_of::<F>(place));
-                if added <= 0.0 || whole <= 0.0 {
-                    continue;
-                }
-                let beside = own.along.perp_dot(place - own.from).abs();
-                let covered = ((wide.a - beside) / self.grid.step).clamp(0.0, 1.0);
+            let columns = self.grid.columns_between(low, high);
+            let first = self.grid.place(columns.start, row) - own.from;
+            let start = (own.along.dot(first) as f32, own.along.perp_dot(first) as f32);
+            under.row.resize(columns.len(), Swath::default());
+            sweep::<F>(&mut under.row, start, (own, wide), step);
+            for (k, swath) in under.row.iter().enumerate().filter(|(_, swath)| swath.share > 0.0) {
+                let at = row * self.grid.columns + columns.start + k;
                 let swept = &mut self.swept[at];
-                let before = if self.pieces - swept.piece > 1 { 0.0 } else { f64::from(swept.part) };
-                let share = (added / whole).min(1.0);
+                let before = if self.pieces - swept.piece > 1 { 0.0 } else { swept.part };
                 // As a fraction of what the bead has yet to bring here; a fully swept point starts again.
-                let (part, after) = if before + share < 1.0 {
-                    (share / (1.0 - before), before + share)
+                let (part, after) = if before + swath.share < 1.0 {
+                    (swath.share / (1.0 - before), before + swath.share)
                 } else {
-                    (1.0, before + share - 1.0)
+                    (1.0, before + swath.share - 1.0)
                 };
-                *swept = Swept { part: after as f32, piece: self.pieces };
-                let (crown, ground) = (own.passed_over::<F>(place), f64::from(self.top[at]));
-                cells.push(Cell { at, part: covered * part, left: 1.0 - before, crown, ground });
+                *swept = Swept { part: after, piece: self.pieces };
+                under.at.push(at);
+                under.part.push(swath.covered * part);
+                under.left.push(1.0 - before);
+                under.crown.push(swath.crown);
+                under.ground.push(self.top[at]);
             }
         }
-        cells
     }
 }
 
-/// A grid point under a piece of bead.
-struct Cell {
-    at: usize,
-    /// The fraction that the piece brings, of what the bead has yet to bring here.
-    part: f64,
-    /// The fraction of the bead that had not been laid here.
-    left: f64,
+/// What a piece of bead brings to a grid point.
+#[derive(Debug, Clone, Copy, Default)]
+struct Swath {
+    /// The fraction of the bead that it sweeps.
+    share: f32,
     /// Height of the bead above its edge, mm.
-    crown: f64,
-    /// Height of the metal already here, mm.
-    ground: f64,
+    crown: f32,
+    /// The fraction of the point that the bead covers.
+    covered: f32,
 }
 
-/// The height of a bead's edge at which the metal between its top and the ground is `metal` (mm summed over grid
-/// points).
-fn edge_height(cells: &[Cell], bead: &Bead, metal: f64) -> Option<f64> {
-    let highest = cells.iter().map(|cell| cell.ground).fold(f64::NEG_INFINITY, f64::max);
-    let lowest = cells.iter().map(|cell| cell.ground).fold(f64::INFINITY, f64::min);
-    let sag = bead.area() / bead.width;
-    let (mut low, mut high) = (lowest - bead.height, highest + bead.height);
-    let mut edge = lowest;
-    for _ in 0..50 {
-        let (mut sum, mut slope) = (-metal, 0.0);
-        for cell in cells {
-            let depth = edge + cell.crown - cell.ground;
-            if depth > 0.0 {
-                let most = cell.left * (cell.crown + sag);
-                sum += cell.part * depth.min(most);
-                slope += if depth < most { cell.part } else { 0.0 };
+/// What a piece brings to a row of points; the first of them lies at `start` along and across it, mm. Code without branches,
+/// which becomes vector instructions.
+fn sweep<F: Pool>(row: &mut [Swath], start: (f32, f32), (own, wide): (&Frame, &Frame), step: f64) {
+    let (x, y) = ((own.along.x * step) as f32, (-own.along.y * step) as f32);
+    let (length, height, half) = (own.length as f32, own.height as f32, wide.a as f32);
+    let (per_own, per_wide, per_step) = ((1.0 / own.a) as f32, (1.0 / wide.a) as f32, (1.0 / step) as f32);
+    for (k, swath) in (0_u16..).zip(row) {
+        let (along, across) = (start.0 + f32::from(k) * x, start.1 + f32::from(k) * y);
+        let (inside, of_own) = (1.0 - (across * per_wide).powi(2), 1.0 - (across * per_own).powi(2));
+        let per_chord = per_wide / inside.max(f32::MIN_POSITIVE).sqrt();
+        let share = F::share((length - along) * per_chord) - F::share(-along * per_chord);
+        *swath = Swath {
+            share: if inside > 0.0 { share.min(1.0) } else { 0.0 },
+            crown: height * F::whole(of_own),
+            covered: ((half - across.abs()) * per_step).clamp(0.0, 1.0),
+        };
+    }
+}
+
+/// The grid points under a piece of bead.
+#[derive(Debug, Clone, Default)]
+struct Under {
+    at: Vec<usize>,
+    /// The fraction that the piece brings, of what the bead has yet to bring here.
+    part: Vec<f32>,
+    /// The fraction of the bead that had not been laid here.
+    left: Vec<f32>,
+    /// Height of the bead above its edge, mm.
+    crown: Vec<f32>,
+    /// Height of the metal already here, mm.
+    ground: Vec<f32>,
+    /// Room for one row.
+    row: Vec<Swath>,
+}
+
+/// Points computed side by side.
+const LANES: usize = 8;
+
+impl Under {
+    fn clear(&mut self) {
+        self.at.clear();
+        [&mut self.part, &mut self.left, &mut self.crown, &mut self.ground].into_iter().for_each(Vec::clear);
+    }
+
+    /// The grid points, the fraction that the piece brings, and how high the bead rises above the ground if its edge is at
+    /// height 0.
+    fn points(&self) -> impl Iterator<Item = (usize, f32, f32)> {
+        let rise = self.crown.iter().zip(&self.ground).map(|(crown, ground)| crown - ground);
+        self.at.iter().zip(&self.part).zip(rise).map(|((at, part), rise)| (*at, *part, rise))
+    }
+
+    /// The height of a bead's edge at which the metal between its top and the ground is `metal` (mm summed over grid
+    /// points), sought from that of the piece `before` it.
+    fn edge_height(&mut self, bead: &Bead, metal: f32, before: Option<f32>) -> Option<f32> {
+        let highest = self.ground.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let lowest = self.ground.iter().copied().fold(f32::INFINITY, f32::min);
+        let (height, sag) = (bead.height as f32, (bead.area() / bead.width) as f32);
+        let (mut low, mut high) = (lowest - height, highest + height);
+        let mut edge = before.filter(|before| (low..=high).contains(before)).unwrap_or(lowest);
+        for _ in 0..50 {
+            let (laid, slope) = self.metal(edge, sag);
+            let sum = laid - metal;
+            if sum.abs() <= BALANCED * metal {
+                break;
+            }
+            *(if sum > 0.0 { &mut high } else { &mut low }) = edge;
+            let step = edge - sum / slope;
+            edge = if step > low && step < high { step } else { 0.5 * (low + high) };
+        }
+        (!self.at.is_empty() && edge.is_finite()).then_some(edge)
+    }
+
+    /// The metal between a bead with its edge at this height and the ground, mm summed over grid points, and how much more it
+    /// is for an edge 1 mm higher. Below its edge, metal runs down no farther than `sag`.
+    fn metal(&self, edge: f32, sag: f32) -> (f32, f32) {
+        let (part, left) = (self.part.chunks(LANES), self.left.chunks(LANES));
+        let (crown, ground) = (self.crown.chunks(LANES), self.ground.chunks(LANES));
+        let (mut sums, mut slopes) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+        for ((part, left), (crown, ground)) in part.zip(left).zip(crown.zip(ground)) {
+            for ((((sum, slope), part), left), (crown, ground)) in
+                sums.iter_mut().zip(&mut slopes).zip(part).zip(left).zip(crown.iter().zip(ground))
+            {
+                let (depth, most) = (edge + crown - ground, left * (crown + sag));
+                *sum += part * depth.max(0.0).min(most);
+                *slope += if depth > 0.0 && depth < most { *part } else { 0.0 };
             }
         }
-        if sum.abs() <= BALANCED * metal {
-            break;
-        }
-        *(if sum > 0.0 { &mut high } else { &mut low }) = edge;
-        let step = edge - sum / slope;
-        edge = if step > low && step < high { step } else { 0.5 * (low + high) };
+        (sums.iter().sum(), slopes.iter().sum())
     }
-    (!cells.is_empty() && edge.is_finite()).then_some(edge)
 }
 
 /// A path as pieces of bead no longer than half its width; pieces shorter than a quarter are joined where the path
