@@ -290,6 +290,7 @@ impl<'a> Known<'a> {
         let scan = inner && view.mode == Mode::Solid && !view.laying && !bent && !divided;
         let beads = !scan && !divided;
         let arm = self.arm(view).filter(|_| !bent);
+        let machine = if bent { Default::default() } else { self.machine(view, arm.as_ref()) };
         let at_arm = self.torch_place(view).filter(|_| arm.is_some()).map(|place| place.torch);
         let scene = &self.plans.own.scene;
         let pieces = scene.layer(view.last).map_or(0, |layer| layer.len());
@@ -312,7 +313,8 @@ impl<'a> Known<'a> {
             plate: self.plate().filter(|_| view.plate && !bent),
             // The torch follows the plan.
             torch: view.torch.filter(|_| !bent).or(at_arm),
-            arm: arm.map(|arm| arm.links).unwrap_or_default(),
+            around: machine.0,
+            floor: machine.1,
             highlight: view.chosen.and_then(|chosen| pick_in(scene.drawn_layer(chosen.0)?, chosen)),
             dark: !self.window.settings.light,
         }

@@ -19,6 +19,7 @@
 //! | [`listing`] | the lines of a program, and where the torch is at each of them |
 //! | [`shares`] | what the time of a program is spent on |
 //! | [`arm`], [`holding`] | the robot's pose with the torch at a place; how the part is held there |
+//! | [`machine`] | how robot, positioner, table and floor look |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `known` | window, project, plans, background work: what panels read; and what they can change |
@@ -54,6 +55,7 @@ pub mod jobs;
 mod known;
 pub mod level;
 pub mod listing;
+pub mod machine;
 pub mod orient;
 mod panels;
 pub mod planner;

@@ -22,6 +22,7 @@ mod play;
 mod preform;
 mod program;
 mod range;
+mod robots;
 mod scan;
 mod space;
 mod start;
