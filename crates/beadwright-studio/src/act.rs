@@ -150,6 +150,8 @@ impl Studio {
             Action::List => self.begin_listing(),
             Action::StopDistortion => self.stop_distortion(),
             Action::CloseScan => self.close_scan(),
+            Action::Adapt => self.adapt(),
+            Action::CloseBuildScan => self.close_build_scan(),
             Action::TakeCell(name) => {
                 self.view.cell_chosen = true;
                 self.take_cell(name);

@@ -112,6 +112,10 @@ pub enum Action {
     DrawExample,
     /// Computes the steps of the strategies in the layer in view.
     LookCloser,
+    /// Takes the layers that follow a scan of the unfinished build in place of those planned.
+    Adapt,
+    /// Puts that scan away.
+    CloseBuildScan,
     /// Closes the scan.
     CloseScan,
     /// Uses another robot cell.

@@ -20,6 +20,7 @@ impl Studio {
                 other.plan.take(event);
             }
         }
+        self.hear_of_adapting();
         self.view.follow(self.plans.own.layer_count());
         match jobs::take(&mut self.jobs.dialog) {
             Some(Ok(Answer { what, path: Some(path), .. })) => self.answered(what, &path),

@@ -111,7 +111,8 @@ impl Studio {
         let first = match what {
             Ask::SaveProject => named("bwp"),
             Ask::SavePicture => named("png"),
-            Ask::Open | Ask::Folder | Ask::OpenProfile | Ask::OpenBeads | Ask::OpenScan => String::new(),
+            Ask::Open | Ask::Folder | Ask::OpenProfile | Ask::OpenBeads => String::new(),
+            Ask::OpenScan | Ask::OpenBuildScan => String::new(),
         };
         (self.jobs.typed, self.view.typed) = (Some(what), first);
     }
@@ -123,6 +124,7 @@ impl Studio {
             Ask::SavePicture => self.save_picture(path),
             Ask::OpenBeads => self.open_beads(path),
             Ask::OpenScan => self.open_scan(path),
+            Ask::OpenBuildScan => self.open_build_scan(path),
             Ask::OpenProfile => {
                 let text = disk::text(path);
                 let checked = text.and_then(|text| Profile::parse(&text).map(|_| text).map_err(|e| e.to_string()));

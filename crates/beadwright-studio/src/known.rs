@@ -2,6 +2,7 @@
 //! requests.
 
 use crate::actions::Action;
+use crate::adaptation::Adapting;
 use crate::compared::Compared;
 use crate::directions::Dividing;
 use crate::distortion::Distorting;
@@ -120,6 +121,8 @@ pub(crate) struct Jobs {
     pub(crate) listing: Option<Listed>,
     /// How plate and part bend, computed or being computed.
     pub(crate) distortion: Option<Distorting>,
+    /// A scan of the unfinished build, compared or being compared.
+    pub(crate) adapting: Option<Adapting>,
     /// Divisions of the part, found or looked for.
     pub(crate) dividing: Option<Dividing>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
@@ -155,6 +158,7 @@ impl Jobs {
             || self.scan_job.is_some()
             || self.listing_job.is_some()
             || self.scan_wanted.is_some()
+            || self.adapting.as_ref().is_some_and(|adapting| adapting.run.progress().is_some())
             || self.dividing.as_ref().is_some_and(|dividing| dividing.run.progress().is_some())
             || self.distortion.as_ref().is_some_and(|distortion| distortion.run.progress().is_some());
         !computes && !self.looked.is_busy()

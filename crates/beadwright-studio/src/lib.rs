@@ -17,6 +17,7 @@
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
 //! | [`listing`] | the lines of a program, and where the torch is at each of them |
+//! | [`adaptation`], `adapting` | what follows a scan of an unfinished build; the same in the window |
 //! | [`shares`] | what the time of a program is spent on |
 //! | [`arm`], [`holding`] | the robot's pose with the torch at a place; how the part is held there |
 //! | [`machine`] | how robot, positioner, table and floor look |
@@ -34,6 +35,8 @@
 
 mod act;
 pub mod actions;
+pub mod adaptation;
+mod adapting;
 mod app;
 pub mod arm;
 mod bending;

@@ -1,5 +1,6 @@
 //! The panels around the views, one file each.
 
+mod adapt;
 mod basic;
 mod bead;
 mod centre;
@@ -98,6 +99,9 @@ fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     if known.jobs.dividing.is_some() || view.state.side == Side::Directions {
         tabs.push((Side::Directions, "directions"));
     }
+    if view.state.adapt.is_some() || known.project().adapted.is_some() || view.state.side == Side::Adapt {
+        tabs.push((Side::Adapt, "adapt"));
+    }
     ui.horizontal_wrapped(|ui| {
         for (side, key) in tabs {
             let count = if side == Side::Findings { known.plans.own.found() } else { 0 };
@@ -120,6 +124,7 @@ fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
         Side::Findings => findings::show(known, view, queue, ui),
         Side::Plots => plots::show(known, view, queue, ui),
         Side::Program => {}
+        Side::Adapt => adapt::show(known, view, queue, ui),
         Side::Directions => directions::show(known, view, queue, ui),
         Side::Export => export::show(known, view, queue, ui),
     });

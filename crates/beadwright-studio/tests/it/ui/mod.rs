@@ -1,5 +1,6 @@
 //! The window, headless, by the widgets a person uses.
 
+mod adapt;
 mod background;
 mod basic;
 mod compare;
