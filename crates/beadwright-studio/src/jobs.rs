@@ -79,6 +79,8 @@ pub enum Ask {
     OpenBeads,
     /// A scan to compare with the part.
     OpenScan,
+    /// A folder of models to be planned one after another.
+    BatchFolder,
     /// A scan of the unfinished build, to be followed.
     OpenBuildScan,
 }

@@ -3,6 +3,7 @@
 
 use crate::actions::Action;
 use crate::adaptation::Adapting;
+use crate::batch::Batch;
 use crate::compared::Compared;
 use crate::directions::Dividing;
 use crate::distortion::Distorting;
@@ -121,6 +122,8 @@ pub(crate) struct Jobs {
     pub(crate) listing: Option<Listed>,
     /// How plate and part bend, computed or being computed.
     pub(crate) distortion: Option<Distorting>,
+    /// Several models, planned or being planned.
+    pub(crate) batch: Option<Batch>,
     /// A scan of the unfinished build, compared or being compared.
     pub(crate) adapting: Option<Adapting>,
     /// Divisions of the part, found or looked for.
@@ -148,6 +151,11 @@ impl Jobs {
         (self.suggested, self.suggest_job) = (None, None);
     }
 
+    /// Gives up planning several models; what is planned stays.
+    pub(crate) fn stop_batch(&mut self) {
+        self.batch.iter_mut().for_each(|batch| batch.run = None);
+    }
+
     /// Whether nothing is being computed.
     pub(crate) fn is_idle(&self) -> bool {
         let computes = self.reach_job.is_some()
@@ -158,6 +166,7 @@ impl Jobs {
             || self.scan_job.is_some()
             || self.listing_job.is_some()
             || self.scan_wanted.is_some()
+            || self.batch.as_ref().is_some_and(Batch::runs)
             || self.adapting.as_ref().is_some_and(|adapting| adapting.run.progress().is_some())
             || self.dividing.as_ref().is_some_and(|dividing| dividing.run.progress().is_some())
             || self.distortion.as_ref().is_some_and(|distortion| distortion.run.progress().is_some());

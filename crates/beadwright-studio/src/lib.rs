@@ -18,6 +18,7 @@
 //! | [`form`] | the profile as a form |
 //! | [`listing`] | the lines of a program, and where the torch is at each of them |
 //! | [`adaptation`], `adapting` | what follows a scan of an unfinished build; the same in the window |
+//! | [`batch`] | several models, planned one after another |
 //! | [`shares`] | what the time of a program is spent on |
 //! | [`arm`], [`holding`] | the robot's pose with the torch at a place; how the part is held there |
 //! | [`machine`] | how robot, positioner, table and floor look |
@@ -39,6 +40,7 @@ pub mod adaptation;
 mod adapting;
 mod app;
 pub mod arm;
+pub mod batch;
 mod bending;
 pub mod chinese;
 pub mod compared;

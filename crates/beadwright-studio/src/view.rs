@@ -145,6 +145,8 @@ pub struct ViewState {
     pub keys: bool,
     /// Whether the first steps are shown.
     pub first_steps: bool,
+    /// Whether the table of several models is shown.
+    pub batch: bool,
     /// Whether it is shown what this program is.
     pub about: bool,
     /// The layer wanted as the highest one; the top layer if none is wanted, or while there are fewer layers.
@@ -196,6 +198,7 @@ impl Default for ViewState {
             keys: false,
             first_steps: false,
             about: false,
+            batch: false,
             wanted: None,
             left: None,
         }

@@ -38,7 +38,7 @@ pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<Answer> {
         Ask::Open => dialog.add_filter("STL, IGES, BWP", &models),
         Ask::OpenProfile | Ask::OpenBeads => dialog.add_filter("TOML", &["toml"]),
         Ask::OpenScan | Ask::OpenBuildScan => dialog,
-        Ask::Folder => return answered(ctx, what, "Downloads".into()),
+        Ask::Folder | Ask::BatchFolder => return answered(ctx, what, "Downloads".into()),
         Ask::SaveProject => return answered(ctx, what, format!("{name}.bwp").into()),
         Ask::SavePicture => return answered(ctx, what, format!("{name}.png").into()),
     };

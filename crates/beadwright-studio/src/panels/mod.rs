@@ -2,6 +2,7 @@
 
 mod adapt;
 mod basic;
+mod batch;
 mod bead;
 mod centre;
 mod clock;
@@ -54,6 +55,7 @@ pub(crate) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     }
     questions::show(known, view, queue, ui);
     help::show(known, view, ui);
+    batch::show(known, view, queue, ui);
 }
 
 /// The panels around the view of a part.

@@ -3,6 +3,7 @@
 mod adapt;
 mod background;
 mod basic;
+mod batch;
 mod compare;
 mod directions;
 mod distortion;
