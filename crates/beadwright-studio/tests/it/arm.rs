@@ -73,8 +73,10 @@ fn joints_are_drawn_about_their_axes_and_links_between_them() {
                 let mut turned = joints;
                 turned[joint] += 25.0;
                 // Joint 3 of an arm with a parallelogram shows the angle to the floor, so joint 2 alone does not turn the forearm.
-                if joint == 1 && cell.description.contains("IRB 1410") || joint == 1 && name.starts_with("fanuc") {
-                    turned[2] = joints[2] + 25.0 * if name.starts_with("fanuc") { -1.0 } else { 1.0 };
+                if let (1, robot::Shape::Opw(table)) = (joint, &cell.arm.shape)
+                    && table.parallelogram
+                {
+                    turned[2] += 25.0 * f64::from(table.signs[1] * table.signs[2]);
                 }
                 let moved = arm.forward(&turned);
                 let [before, after] = [flange.position, moved.position].map(|place| place - axis.nearest(place));
