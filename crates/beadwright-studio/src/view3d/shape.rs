@@ -38,9 +38,9 @@ pub enum Shape {
     },
     /// A box.
     Block {
-        /// Its lowest corner and three edges, mm.
+        /// The corner at which its edges begin, mm.
         corner: DVec3,
-        /// The edges that meet there, mm.
+        /// The three edges from there, mm.
         edges: [DVec3; 3],
         /// What it is.
         look: Look,
