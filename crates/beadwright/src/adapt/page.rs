@@ -29,11 +29,6 @@ pub(crate) fn relief(surface: &Surface, most: f64, height: impl Fn(usize) -> Opt
     }
 }
 
-/// The ends of a scale of heights, in words.
-pub(crate) fn key(most: f64) -> [String; 2] {
-    ["below", "above"].map(|word| format!("{} mm {word}", fixed(most, 2)))
-}
-
 /// Heights as cells of a table: mean, root mean square, lowest, highest.
 pub(crate) fn cells(spread: &Spread) -> Row {
     [spread.mean, spread.rms, spread.low, spread.high].map(|height| (format!("{height:+.2}"), false)).into()
@@ -86,6 +81,6 @@ pub fn page(part: &str, number: usize, z: f64, seen: &Seen, sentences: &[String]
         ("measured minus predicted", &difference),
     ];
     let columns: Vec<_> = pictures.iter().map(|(name, picture)| ((*name).to_owned(), vec![Some(*picture)])).collect();
-    sheet.heading("Pictures").heights(&key(most), &[format!("layer {number}")], &columns);
+    sheet.heading("Pictures").heights(most, &[format!("layer {number}")], &columns);
     sheet
 }
