@@ -103,9 +103,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let preform = if offered.iter().any(hangs) { ", or add metal below overhangs (plan --preform)" } else { "" };
         writeln!(out, "So the part cannot be welded as it is. Edit the bodies{preform}.")?;
     }
-    if let Some(tilted) = &found.tilted {
-        let (tilt, pieces) = (tilted.division.tilt.ceil(), tilted.bodies.len());
-        writeln!(out, "As {pieces} bodies it could be welded with --tilt {tilt}, if the part can be turned so far.")?;
+    if let Some(sentence) = found.about_tilted() {
+        writeln!(out, "{sentence}")?;
     }
     if open_edges > 0 {
         writeln!(out, "The surface is open ({open_edges} edges); bodies are made of solids.")?;

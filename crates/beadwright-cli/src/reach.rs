@@ -3,6 +3,7 @@
 use crate::{file, profile, program};
 use anyhow::{Context, bail};
 use beadwright::files::write_file;
+use beadwright::profile::Misfit;
 use beadwright::robot::{
     self, Cell, External, PartPlace, Reach, Station, Suggestion, TableAngle, Track, Trajectory, cell,
 };
@@ -68,6 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if track.stops.is_empty() {
         bail!("{}: the plan has no passes.", path.display());
     }
+    let misfits: Vec<String> = profile.misfits(&cell).iter().map(Misfit::sentence).collect();
     let place = arguments.at.unwrap_or(cell.part);
     let External { cell, place, station, table } = robot::external_axes(&cell, place, &track);
     let start = Instant::now();
@@ -86,13 +88,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         write_file(path, text.as_bytes())?;
     }
     if arguments.json {
-        writeln!(out, "{:#}", json(&cell, &reach, (station, table), suggestion))?;
+        let mut value = json(&cell, &reach, (station, table), suggestion);
+        value["misfits"] = serde_json::json!(misfits);
+        writeln!(out, "{value:#}")?;
     } else {
         print(&mut out, &plan.header.part, &cell, &track, &reach, (station, table))?;
         if reach.reached().next().is_some() {
             let rate = reach.computed as f64 / seconds.max(1e-9);
             writeln!(out, "  poses computed         {} ({rate:.0} a second)", reach.computed)?;
         }
+        misfits.iter().try_for_each(|sentence| writeln!(out, "note: {sentence}"))?;
         // The first bad one is the error below.
         let others = reach.findings.iter().filter(|f| reach.first_bad() != Some(f));
         others.into_iter().try_for_each(|f| writeln!(out, "note: {}", f.sentence()))?;

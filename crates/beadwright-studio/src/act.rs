@@ -60,6 +60,7 @@ impl Studio {
                 self.view.playing = false;
                 self.view.pin = None;
                 self.view.division = None;
+                self.jobs.stop_batch();
                 if self.jobs.distortion.as_ref().is_some_and(|distortion| distortion.run.progress().is_some()) {
                     self.stop_distortion();
                 }
@@ -150,6 +151,10 @@ impl Studio {
             Action::List => self.begin_listing(),
             Action::StopDistortion => self.stop_distortion(),
             Action::CloseScan => self.close_scan(),
+            Action::Adapt => self.adapt(),
+            Action::Batch(paths) => self.begin_batch(paths),
+            Action::StopBatch => self.jobs.stop_batch(),
+            Action::CloseBuildScan => self.close_build_scan(),
             Action::TakeCell(name) => {
                 self.view.cell_chosen = true;
                 self.take_cell(name);

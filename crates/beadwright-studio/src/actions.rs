@@ -112,6 +112,14 @@ pub enum Action {
     DrawExample,
     /// Computes the steps of the strategies in the layer in view.
     LookCloser,
+    /// Plans several models one after another.
+    Batch(Vec<PathBuf>),
+    /// Gives that up; what is planned stays.
+    StopBatch,
+    /// Takes the layers that follow a scan of the unfinished build in place of those planned.
+    Adapt,
+    /// Puts that scan away.
+    CloseBuildScan,
     /// Closes the scan.
     CloseScan,
     /// Uses another robot cell.

@@ -1,6 +1,7 @@
 //! One frame of the window: receive what has happened, do what was asked for, draw the panels.
 
 use crate::actions;
+use crate::computing::Computing;
 use crate::jobs::{self, Answer};
 use crate::known::Queue;
 use crate::panels;
@@ -20,6 +21,8 @@ impl Studio {
                 other.plan.take(event);
             }
         }
+        self.hear_of_adapting();
+        self.jobs.batch.iter_mut().filter_map(|batch| batch.run.as_mut()).for_each(Computing::hear);
         self.view.follow(self.plans.own.layer_count());
         match jobs::take(&mut self.jobs.dialog) {
             Some(Ok(Answer { what, path: Some(path), .. })) => self.answered(what, &path),

@@ -2,11 +2,12 @@
 
 use crate::holding::{self, Come, Place};
 use crate::known::Known;
+use crate::machine;
 use crate::view::ViewState;
-use crate::view3d::LayerBeads;
+use crate::view3d::{BELOW, Floor, LayerBeads, Shape};
 use beadwright::program::Held;
-use beadwright::robot::body::{Capsule, capsules};
-use beadwright::robot::{Cell, Joints, Reach, Stop};
+use beadwright::robot::body::{Capsule, Solid, capsules};
+use beadwright::robot::{Cell, Frame, Joints, Reach, Stop};
 
 /// The pose of the arm with the torch at a place.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +18,8 @@ pub struct Stand {
     pub margin: f64,
     /// Its links and the torch, in the part's space.
     pub links: Vec<Capsule>,
+    /// How they look, likewise.
+    pub shapes: Vec<Shape>,
 }
 
 /// The pose of the arm with the torch at a place, in the posture that the program uses there; `None` where the arm
@@ -42,7 +45,15 @@ pub fn stand(cell: &Cell, reach: &Reach, place: &Place) -> Option<Stand> {
         let flange_from_tool = cell.flange_from_tool();
         capsules(&arm, body, &flange_from_tool, &joints, &part_from_base)
     });
-    Some(Stand { joints, margin: arm.margins(&joints).least(), links: links.unwrap_or_default() })
+    let links = links.unwrap_or_default();
+    let neck = links.iter().filter(|link| link.solid == Solid::Torch).collect::<Vec<_>>();
+    let torch = match neck[..] {
+        [first, second] => machine::torch([first.ends[0], first.ends[1], second.ends[1]], first.radius),
+        _ => Vec::new(),
+    };
+    let body = machine::arm(cell, &joints).into_iter().map(|shape| shape.moved(&part_from_base));
+    let shapes = body.chain(torch).collect();
+    Some(Stand { joints, margin: arm.margins(&joints).least(), links, shapes })
 }
 
 impl LayerBeads {
@@ -85,5 +96,25 @@ impl Known<'_> {
     pub(crate) fn arm(self, view: &ViewState) -> Option<Stand> {
         let (cell, reach) = (self.jobs.cell.as_ref()?, self.jobs.reach.as_ref()?);
         stand(cell, reach, &self.torch_place(view)?).filter(|_| view.robot)
+    }
+
+    /// What stands around the part, and the floor, where the robot is shown; `arm` is its pose.
+    pub(crate) fn machine(self, view: &ViewState, arm: Option<&Stand>) -> (Vec<Shape>, Option<Floor>) {
+        let shown = self.jobs.cell.as_ref().zip(self.jobs.reach.as_ref()).filter(|_| view.robot);
+        let Some((cell, reach)) = shown else { return Default::default() };
+        let (held, base_from_part) = (self.held(view), reach.place.base_from_part());
+        let part_from_cell = held.map_or(Frame::IDENTITY, Frame::from).inverse();
+        let floor = machine::floor(cell, &part_from_cell.then(&base_from_part.inverse()));
+        let own = &self.plans.own;
+        let positioner = own.profile.as_ref().and_then(|profile| profile.program.positioner.as_ref());
+        let below = self.plate().map_or(0.0, |plate| plate.thickness) + f64::from(BELOW);
+        let height = base_from_part.position.z;
+        let (low, high) = own.part.as_ref().map_or_else(Default::default, |part| part.bounds());
+        let radius = low.truncate().abs().max(high.truncate().abs()).length();
+        let carrier = match positioner.zip(held.as_ref()) {
+            Some((positioner, held)) => machine::positioner(positioner, held, [below, height, radius]),
+            None => machine::table(cell, below, height, held.is_some() || cell.table.is_some()),
+        };
+        (carrier.into_iter().chain(arm.into_iter().flat_map(|arm| arm.shapes.clone())).collect(), Some(floor))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::computing::Computing;
 use crate::view3d::Scanned;
-use beadwright::directions::{Outcome, Settings, Tried, tried};
+use beadwright::directions::{Settings, Tried, metal, tried};
 use beadwright::model::{Mesh, Part};
 use beadwright::profile::{Body, Profile};
 use beadwright::task::Task;
@@ -28,6 +28,8 @@ pub struct Way {
     pub farther: bool,
     /// The part in the colours of its bodies.
     pub(crate) pieces: Option<Arc<Scanned>>,
+    /// Whether some of it, in grey, must be there already.
+    pub stock: bool,
     /// The bodies as text, by which those of a profile are compared with them.
     text: String,
 }
@@ -61,21 +63,14 @@ impl Ways {
 
 impl Way {
     fn of(tried: Tried, farther: bool, mesh: &Mesh) -> Self {
-        let bodies: Vec<Mesh> = tried.bodies.iter().map(|body| body.of_mesh(mesh)).collect();
+        let metal = metal(mesh, &tried.bodies);
         let text = Body::write(&tried.clone().into_bodies());
-        Self { tried, farther, pieces: Scanned::pieces(&bodies).map(Arc::new), text }
+        let stock = metal.iter().any(|metal| metal.stock);
+        Self { tried, farther, pieces: Scanned::pieces(&metal).map(Arc::new), stock, text }
     }
 
     /// Whether it is how a part with these bodies is welded.
     pub fn is_of(&self, bodies: &[Body]) -> bool {
         self.text == Body::write(bodies)
-    }
-
-    /// Why it cannot be welded.
-    pub fn refused(&self) -> Option<&str> {
-        match &self.tried.outcome {
-            Outcome::Refused { reason, .. } => Some(reason),
-            Outcome::Planned(_) | Outcome::Untried => None,
-        }
     }
 }

@@ -2,8 +2,10 @@
 
 use crate::disk;
 use crate::state::PlanState;
-use beadwright::dialect::{self, Chunk};
+use beadwright::adapt::{Adapted, Unfinished};
+use beadwright::dialect::{self, Chunk, DialectError};
 use beadwright::files::{PLAN, PlanFiles, Programs, Selection};
+use beadwright::layer::Layer;
 use beadwright::plan::Summary;
 use std::path::Path;
 
@@ -35,6 +37,9 @@ impl Export {
     /// # Errors
     /// A sentence: the plan is not complete, or the profile lacks a dialect's section.
     pub fn chunks(&self, state: &PlanState) -> Result<Vec<Chunk>, String> {
+        if let Some(adapted) = &state.adapted {
+            return self.following(state, adapted);
+        }
         match self {
             Self::Program(name) => program(state, name),
             Self::File(name) => {
@@ -43,6 +48,24 @@ impl Export {
                 Ok(chunks)
             }
             Self::All => files(state, state.profile.as_ref().map_or(&[], |profile| &profile.posts)),
+        }
+    }
+
+    /// The same of the layers that follow a scan, as `beadwright adapt` writes it.
+    fn following(&self, state: &PlanState, adapted: &Adapted) -> Result<Vec<Chunk>, String> {
+        match self {
+            Self::All => following(state, adapted, state.profile.as_ref().map_or(&[], |profile| &profile.posts)),
+            Self::File(name) => {
+                let mut chunks = following(state, adapted, &[])?;
+                chunks.retain(|chunk| chunk.file == *name);
+                Ok(chunks)
+            }
+            Self::Program(name) => {
+                let others = following(state, adapted, &[])?;
+                let mut chunks = following(state, adapted, std::slice::from_ref(name))?;
+                chunks.retain(|chunk| !others.iter().any(|other| other.file == chunk.file));
+                Ok(chunks)
+            }
         }
     }
 
@@ -78,6 +101,26 @@ fn program(state: &PlanState, name: &str) -> Result<Vec<Chunk>, String> {
         dialect::writer(name, &job).and_then(|writer| dialect::write_with(writer, &header.extent, &state.layers, &job));
     let files = written.map_err(|error| error.to_string())?;
     Ok(files.into_iter().map(|(file, text)| Chunk { file, text }).collect())
+}
+
+fn following(state: &PlanState, adapted: &Adapted, dialects: &[String]) -> Result<Vec<Chunk>, String> {
+    let (Some(header), Some(profile), Some(summary)) = (&state.header, &state.profile, &state.summary) else {
+        return Err(NOT_YET.to_owned());
+    };
+    if !dialects.is_empty() {
+        allowed(summary)?;
+    }
+    let posts = disk::posts(dialects)?;
+    let programs = Programs::of(&posts, &profile.job(&header.part)).map_err(|error| error.to_string())?;
+    let built: Vec<Layer> = state.layers.iter().take(adapted.number).map(|layer| (**layer).clone()).collect();
+    let build = Unfinished { header, layers: &built, profile, number: adapted.number };
+    let mut all = Vec::new();
+    let take = |chunks: Vec<Chunk>| -> Result<(), DialectError> {
+        all.extend(chunks);
+        Ok(())
+    };
+    adapted.files(build, programs, take).map_err(|error| error.to_string())?;
+    Ok(all)
 }
 
 fn files(state: &PlanState, dialects: &[String]) -> Result<Vec<Chunk>, String> {

@@ -1,5 +1,7 @@
 //! Opening and writing files: models, projects, programs, pictures.
 
+use crate::batch::{self, Batch};
+use crate::computing::Computing;
 use crate::disk;
 use crate::export::Export;
 use crate::jobs::{self, Ask};
@@ -7,17 +9,17 @@ use crate::project::{Project, Source};
 use crate::studio::Studio;
 use beadwright::bead::library::BeadLibrary;
 use beadwright::profile::Profile;
+use beadwright::task::Stage;
 use eframe::egui::DroppedFileHandle;
 use std::io::Cursor;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 impl Studio {
     /// Opens a model or a project.
     pub fn open(&mut self, path: &Path) {
         // A project keeps the path and may be opened from any working directory, so the path must be absolute.
         let path = &std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        let is_project = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("bwp"));
-        if is_project {
+        if is_project(path) {
             self.open_project(path);
         } else {
             self.open.file = None;
@@ -30,8 +32,11 @@ impl Studio {
     /// Opens files dropped on the window.
     pub(crate) fn open_dropped(&mut self, files: Vec<DroppedFileHandle>) {
         #[cfg(not(target_arch = "wasm32"))]
-        for file in files {
-            self.open(file.path());
+        match &files[..] {
+            several @ [_, _, ..] if !several.iter().any(|file| is_project(file.path())) => {
+                self.begin_batch(several.iter().map(|file| file.path().to_owned()).collect());
+            }
+            files => files.iter().for_each(|file| self.open(file.path())),
         }
         // Browsers read files later.
         #[cfg(target_arch = "wasm32")]
@@ -99,6 +104,14 @@ impl Studio {
         }
     }
 
+    /// Plans several models one after another, with the profile of the project.
+    pub fn begin_batch(&mut self, paths: Vec<PathBuf>) {
+        let profile = self.known().parsed().map_or_else(String::new, |parsed| parsed.profile.name.clone());
+        let (mut batch, work) = Batch::of(paths, self.project(), profile);
+        batch.run = Some(Computing::start(&self.window.ctx, Stage::Plan, work));
+        (self.jobs.batch, self.view.batch) = (Some(batch), true);
+    }
+
     /// Asks for a file or a folder.
     pub(crate) fn ask(&mut self, what: Ask) {
         let name = self.project().part();
@@ -111,7 +124,8 @@ impl Studio {
         let first = match what {
             Ask::SaveProject => named("bwp"),
             Ask::SavePicture => named("png"),
-            Ask::Open | Ask::Folder | Ask::OpenProfile | Ask::OpenBeads | Ask::OpenScan => String::new(),
+            Ask::Open | Ask::Folder | Ask::BatchFolder | Ask::OpenProfile | Ask::OpenBeads => String::new(),
+            Ask::OpenScan | Ask::OpenBuildScan => String::new(),
         };
         (self.jobs.typed, self.view.typed) = (Some(what), first);
     }
@@ -123,6 +137,11 @@ impl Studio {
             Ask::SavePicture => self.save_picture(path),
             Ask::OpenBeads => self.open_beads(path),
             Ask::OpenScan => self.open_scan(path),
+            Ask::BatchFolder => match batch::models(path) {
+                Ok(models) => self.begin_batch(models),
+                Err(error) => self.complain(error),
+            },
+            Ask::OpenBuildScan => self.open_build_scan(path),
             Ask::OpenProfile => {
                 let text = disk::text(path);
                 let checked = text.and_then(|text| Profile::parse(&text).map(|_| text).map_err(|e| e.to_string()));
@@ -168,4 +187,8 @@ impl Studio {
             Err(error) => self.complain(error),
         }
     }
+}
+
+fn is_project(path: &Path) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case("bwp"))
 }

@@ -79,6 +79,10 @@ pub enum Ask {
     OpenBeads,
     /// A scan to compare with the part.
     OpenScan,
+    /// A folder of models to be planned one after another.
+    BatchFolder,
+    /// A scan of the unfinished build, to be followed.
+    OpenBuildScan,
 }
 
 /// What a dialog returned: the path, if there is one, and whether the dialog can have been on the screen at all.

@@ -2,6 +2,8 @@
 //! requests.
 
 use crate::actions::Action;
+use crate::adaptation::Adapting;
+use crate::batch::Batch;
 use crate::compared::Compared;
 use crate::directions::Dividing;
 use crate::distortion::Distorting;
@@ -120,6 +122,10 @@ pub(crate) struct Jobs {
     pub(crate) listing: Option<Listed>,
     /// How plate and part bend, computed or being computed.
     pub(crate) distortion: Option<Distorting>,
+    /// Several models, planned or being planned.
+    pub(crate) batch: Option<Batch>,
+    /// A scan of the unfinished build, compared or being compared.
+    pub(crate) adapting: Option<Adapting>,
     /// Divisions of the part, found or looked for.
     pub(crate) dividing: Option<Dividing>,
     pub(crate) reach_job: Option<Job<Result<Reach, String>>>,
@@ -145,6 +151,11 @@ impl Jobs {
         (self.suggested, self.suggest_job) = (None, None);
     }
 
+    /// Gives up planning several models; what is planned stays.
+    pub(crate) fn stop_batch(&mut self) {
+        self.batch.iter_mut().for_each(|batch| batch.run = None);
+    }
+
     /// Whether nothing is being computed.
     pub(crate) fn is_idle(&self) -> bool {
         let computes = self.reach_job.is_some()
@@ -155,6 +166,8 @@ impl Jobs {
             || self.scan_job.is_some()
             || self.listing_job.is_some()
             || self.scan_wanted.is_some()
+            || self.batch.as_ref().is_some_and(Batch::runs)
+            || self.adapting.as_ref().is_some_and(|adapting| adapting.run.progress().is_some())
             || self.dividing.as_ref().is_some_and(|dividing| dividing.run.progress().is_some())
             || self.distortion.as_ref().is_some_and(|distortion| distortion.run.progress().is_some());
         !computes && !self.looked.is_busy()
@@ -290,6 +303,7 @@ impl<'a> Known<'a> {
         let scan = inner && view.mode == Mode::Solid && !view.laying && !bent && !divided;
         let beads = !scan && !divided;
         let arm = self.arm(view).filter(|_| !bent);
+        let machine = if bent { Default::default() } else { self.machine(view, arm.as_ref()) };
         let at_arm = self.torch_place(view).filter(|_| arm.is_some()).map(|place| place.torch);
         let scene = &self.plans.own.scene;
         let pieces = scene.layer(view.last).map_or(0, |layer| layer.len());
@@ -312,7 +326,8 @@ impl<'a> Known<'a> {
             plate: self.plate().filter(|_| view.plate && !bent),
             // The torch follows the plan.
             torch: view.torch.filter(|_| !bent).or(at_arm),
-            arm: arm.map(|arm| arm.links).unwrap_or_default(),
+            around: machine.0,
+            floor: machine.1,
             highlight: view.chosen.and_then(|chosen| pick_in(scene.drawn_layer(chosen.0)?, chosen)),
             dark: !self.window.settings.light,
         }

@@ -17,8 +17,11 @@
 //! | `process` | the language of programs and the robot cell, which follow the profile |
 //! | [`form`] | the profile as a form |
 //! | [`listing`] | the lines of a program, and where the torch is at each of them |
+//! | [`adaptation`], `adapting` | what follows a scan of an unfinished build; the same in the window |
+//! | [`batch`] | several models, planned one after another |
 //! | [`shares`] | what the time of a program is spent on |
 //! | [`arm`], [`holding`] | the robot's pose with the torch at a place; how the part is held there |
+//! | [`machine`] | how robot, positioner, table and floor look |
 //! | [`view`] | what is shown, and how |
 //! | [`view3d`], [`view2d`] | part and beads; one layer |
 //! | `known` | window, project, plans, background work: what panels read; and what they can change |
@@ -33,8 +36,11 @@
 
 mod act;
 pub mod actions;
+pub mod adaptation;
+mod adapting;
 mod app;
 pub mod arm;
+pub mod batch;
 mod bending;
 pub mod chinese;
 pub mod compared;
@@ -54,6 +60,7 @@ pub mod jobs;
 mod known;
 pub mod level;
 pub mod listing;
+pub mod machine;
 pub mod orient;
 mod panels;
 pub mod planner;

@@ -33,7 +33,7 @@ use beadwright::layer::Layer;
 use beadwright::model::{Mesh, Part};
 use beadwright::plan::{Header, Summary};
 use beadwright::profile::Profile;
-use beadwright::task::Stage;
+use beadwright::task::{Stage, Task};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -73,6 +73,17 @@ pub enum Failure {
     Sentence(String),
 }
 
+impl Failure {
+    /// The sentence.
+    pub fn sentence(&self) -> &str {
+        match self {
+            Self::Units(sentence, _) | Self::Damaged(sentence) | Self::Height(sentence) | Self::Sentence(sentence) => {
+                sentence
+            }
+        }
+    }
+}
+
 /// What is to be planned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Order {
@@ -102,6 +113,12 @@ impl Event {
             Self::Progress(..) | Self::Begin(_) | Self::Layer(..) | Self::Judged(..) => Urgency::Soon,
         }
     }
+}
+
+/// Plans a project on this thread, as a planner does in the background; a cancelled one ends in silence.
+pub fn plan_alone(project: &Project, task: &Task, send: &(dyn Fn(Event) + Sync)) {
+    let order = Order { number: 0, project: project.clone(), layer: 0 };
+    work::carry_out(&order, task, &mut work::Cache::default(), send);
 }
 
 /// Plans in the background; keeps only the events of the last order.

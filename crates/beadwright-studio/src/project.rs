@@ -1,5 +1,6 @@
 //! What the user works on: a model, its placement and a profile. A project file (`.bwp`, TOML) holds all of it.
 
+use crate::adaptation::Adaptation;
 use beadwright::model::Placement;
 use beadwright::profile::{Profile, ProfileError};
 use serde::{Deserialize, Serialize};
@@ -50,13 +51,15 @@ pub struct Project {
     pub height: Option<f64>,
     /// The profile, as the TOML text that people edit.
     pub profile: String,
+    /// A scan of the unfinished build, which the layers above it follow.
+    pub adapted: Option<Adaptation>,
 }
 
 impl Default for Project {
     fn default() -> Self {
         let profile = Profile::built_in_text(FIRST_PROFILE).unwrap_or_default().to_owned();
         let placement = Placement::default();
-        Self { source: None, placement, accept_damaged: false, preform: false, height: None, profile }
+        Self { source: None, placement, accept_damaged: false, preform: false, height: None, profile, adapted: None }
     }
 }
 
@@ -97,6 +100,8 @@ struct File {
     profile: String,
     #[serde(default)]
     placement: Placement,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    adapted: Option<Adaptation>,
 }
 
 impl Project {
@@ -112,10 +117,11 @@ impl Project {
             Some(Source::Example(name)) => (None, Some(name.clone())),
             None => (None, None),
         };
-        let Self { placement, accept_damaged, preform, height, profile, .. } = self.clone();
+        let Self { placement, accept_damaged, preform, height, profile, adapted, .. } = self.clone();
+        let adapted = adapted.map(|adapted| Adaptation { scan: relative(&adapted.scan), ..adapted });
         let version = VERSION;
-        toml::to_string_pretty(&File { version, model, example, height, accept_damaged, preform, profile, placement })
-            .map_err(|error| format!("the project cannot be written: {error}"))
+        let file = File { version, model, example, height, accept_damaged, preform, profile, placement, adapted };
+        toml::to_string_pretty(&file).map_err(|error| format!("the project cannot be written: {error}"))
     }
 
     /// Reads the text of a project file in `folder`.
@@ -138,8 +144,9 @@ impl Project {
             (None, Some(name)) => Some(Source::Example(name)),
             (None, None) => None,
         };
-        let File { placement, accept_damaged, preform, height, profile, .. } = file;
-        Ok(Self { source, placement, accept_damaged, preform, height, profile })
+        let File { placement, accept_damaged, preform, height, profile, adapted, .. } = file;
+        let adapted = adapted.map(|adapted| Adaptation { scan: absolute(adapted.scan.clone()), ..adapted });
+        Ok(Self { source, placement, accept_damaged, preform, height, profile, adapted })
     }
 
     /// The name of the part.

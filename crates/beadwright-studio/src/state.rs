@@ -1,8 +1,10 @@
 //! What is known of a plan, put together from the planner's events.
 
+use crate::adaptation::Follows;
 use crate::planner::{Event, Failure};
 use crate::view3d::{Colour, Scanned, Scene};
 use beadwright::Finding;
+use beadwright::adapt::Adapted;
 use beadwright::check;
 use beadwright::deposit::{Figures, Judgement};
 use beadwright::finding::Severity;
@@ -43,6 +45,10 @@ pub struct PlanState {
     pub failure: Option<Failure>,
     /// What the 3-D view shows.
     pub scene: Scene,
+    /// The scan that the upper layers follow, if they do.
+    pub adapted: Option<Arc<Adapted>>,
+    /// Whether layers have to follow a scan before anything may be written.
+    awaits: bool,
     /// How much of what is in view already comes from the last request.
     received: Received,
 }
@@ -60,12 +66,33 @@ enum Received {
 }
 
 impl PlanState {
-    /// A new request has started; the old plan stays in view until the new one replaces it.
-    pub fn restart(&mut self) {
+    /// A new request has started; the old plan stays in view until the new one replaces it. It may await layers that follow a scan.
+    pub fn restart(&mut self, awaits: bool) {
+        (self.adapted, self.awaits) = (None, awaits);
         self.progress = Some((Stage::Import, 0.0));
         self.failure = None;
         self.findings = None;
         self.received = Received::Nothing;
+        self.report();
+    }
+
+    /// Takes the layers that follow a scan in place of those planned. The deposit model says nothing about them: it knows no uneven
+    /// ground.
+    pub fn follow(&mut self, follows: &Follows) {
+        let number = follows.adapted.number;
+        self.layers.clone_from(&follows.built);
+        self.judgements.truncate(number);
+        self.scene.truncate(number);
+        for (layer, beads) in &follows.layers {
+            self.scene.set_layer(self.layers.len(), beads.clone());
+            self.layers.push(layer.clone());
+        }
+        (self.header, self.summary) = (Some(follows.header.clone()), Some(follows.summary.clone()));
+        self.total = None;
+        if let Some(findings) = &mut self.findings {
+            findings.retain(|finding| finding.layer.is_some_and(|layer| layer < number));
+        }
+        self.adapted = Some(follows.adapted.clone());
         self.report();
     }
 
@@ -99,7 +126,7 @@ impl PlanState {
     /// Whether layers, profile and totals in view belong together and to the last request: only then may they be
     /// written to files.
     pub fn is_of_last_request(&self) -> bool {
-        self.received == Received::Layers
+        self.received == Received::Layers && (!self.awaits || self.adapted.is_some())
     }
 
     /// Whether the part in view is that of the last request.

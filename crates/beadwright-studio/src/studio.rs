@@ -178,6 +178,7 @@ impl Studio {
         self.open.asks_undo = false;
         self.close_scan();
         self.stop_directions();
+        self.close_build_scan();
         self.follow_profile();
         self.flat.clear_measure();
         self.view.reset();
@@ -201,6 +202,10 @@ impl Studio {
     pub(crate) fn change(&mut self, about: &str, change: impl FnOnce(&mut Project)) {
         let mut next = self.project().clone();
         change(&mut next);
+        let next = next.without_stale(self.project());
+        if next.adapted.is_none() && self.project().adapted.is_some() {
+            self.say(self.t("adapt-dropped"));
+        }
         if self.open.project.set(about, next) {
             self.replan();
         }
@@ -243,7 +248,7 @@ impl Studio {
         self.jobs.looked.forget();
         (self.jobs.listing, self.jobs.listing_job) = (None, None);
         (self.jobs.heat_job, self.jobs.level_job, self.jobs.distortion) = (None, None, None);
-        self.jobs.orient_job = None;
+        (self.jobs.orient_job, self.jobs.adapting) = (None, None);
         self.keep_directions();
         if self.project().source.is_none() {
             // Undo has led back to the empty window.
@@ -253,12 +258,12 @@ impl Studio {
             self.plans.other = None;
             return;
         }
-        self.plans.own.restart();
+        self.plans.own.restart(self.open.project.now().adapted.is_some());
         self.plans.planner.plan(self.open.project.now(), self.view.last);
         let project = self.open.project.now().clone();
         if let Some(other) = &mut self.plans.other {
             other.looked.forget();
-            other.plan.restart();
+            other.plan.restart(false);
             other.planner.plan(&with_strategy(project, other.strategy), self.view.last);
         }
     }
@@ -279,7 +284,7 @@ impl Studio {
         };
         (self.their_solid, self.their_flat) = (View3d::default(), View2d::default());
         if self.project().source.is_some() {
-            other.plan.restart();
+            other.plan.restart(false);
             other.planner.plan(&with_strategy(self.project().clone(), strategy), self.view.last);
         }
         self.plans.other = Some(other);

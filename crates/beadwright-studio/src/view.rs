@@ -1,5 +1,6 @@
 //! What is shown, and how. None of it belongs to the project.
 
+use crate::adaptation::Adaptation;
 use crate::view2d::Show;
 use crate::view3d::{Colour, Grip, Scene, Section, Stance};
 use beadwright::distortion::Clamps;
@@ -31,6 +32,8 @@ pub enum Side {
     Program,
     /// Divisions of the part into bodies.
     Directions,
+    /// A scan of the unfinished build, and the layers that follow.
+    Adapt,
     /// What can be exported.
     Export,
 }
@@ -102,6 +105,8 @@ pub struct ViewState {
     pub bend: Bend,
     /// The division of the part that is shown in place of the beads, by its place among those that were found.
     pub division: Option<usize>,
+    /// The scan of the unfinished build that is looked at.
+    pub adapt: Option<Adaptation>,
     /// Whether the robot's arm is shown.
     pub robot: bool,
     /// Whether the next click in 3-D chooses the face on which the part is laid.
@@ -140,6 +145,8 @@ pub struct ViewState {
     pub keys: bool,
     /// Whether the first steps are shown.
     pub first_steps: bool,
+    /// Whether the table of several models is shown.
+    pub batch: bool,
     /// Whether it is shown what this program is.
     pub about: bool,
     /// The layer wanted as the highest one; the top layer if none is wanted, or while there are fewer layers.
@@ -170,6 +177,7 @@ impl Default for ViewState {
             plate: true,
             bend: Bend::default(),
             division: None,
+            adapt: None,
             robot: false,
             laying: false,
             placing: false,
@@ -190,6 +198,7 @@ impl Default for ViewState {
             keys: false,
             first_steps: false,
             about: false,
+            batch: false,
             wanted: None,
             left: None,
         }
@@ -203,7 +212,8 @@ impl ViewState {
         let (laying, placing, grip) = (false, false, None);
         let (wanted, left, chosen, torch, section) = (None, None, None, None, None);
         let shown = Self { wanted, left, first, last, progress, chosen, torch, section, ..self.clone() };
-        *self = Self { laying, placing, grip, pin: None, bend: Bend::default(), division: None, range: None, ..shown };
+        let (bend, division, adapt, range) = (Bend::default(), None, None, None);
+        *self = Self { laying, placing, grip, pin: None, bend, division, adapt, range, ..shown };
     }
 
     /// Keeps the range within the existing layers.

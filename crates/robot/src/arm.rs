@@ -68,6 +68,22 @@ impl Frame {
     }
 }
 
+/// The line about which a joint turns.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis {
+    /// A point on it, mm.
+    pub at: DVec3,
+    /// Its direction, of length 1; which of the two is left open.
+    pub along: DVec3,
+}
+
+impl Axis {
+    /// The point on it nearest to a place, mm.
+    pub fn nearest(&self, place: DVec3) -> DVec3 {
+        self.at + self.along * (place - self.at).dot(self.along)
+    }
+}
+
 /// One of the eight ways in which an arm reaches a pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Branch(u8);
@@ -144,6 +160,8 @@ pub(crate) trait Model: std::fmt::Debug + Send + Sync {
     fn inverse(&self, base_from_flange: &Frame) -> Vec<Joints>;
     /// Foot, axis 2, axis 3 and wrist, mm from the foot.
     fn links(&self, joints: &Joints) -> [DVec3; 4];
+    /// The axes of the joints, in the frame of the foot.
+    fn axes(&self, joints: &Joints) -> [Axis; 6];
     /// The branch of these joint angles.
     fn branch(&self, joints: &Joints) -> Branch;
     /// How far the wrist and the elbow are from their singular angles, °.
@@ -177,6 +195,21 @@ impl Arm {
     /// Foot, axis 2, axis 3 and wrist for these joint angles, °; mm from the foot.
     pub fn links(&self, joints: &Joints) -> [DVec3; 4] {
         self.model.links(joints)
+    }
+
+    /// The axes of the joints for these joint angles, °; in the frame of the foot, mm.
+    ///
+    /// ```
+    /// use bead_robot::Cell;
+    ///
+    /// // Axis 6 goes through the flange, square to it.
+    /// let (arm, joints) = (Cell::built_in("kuka-kr20-r1810")?.arm(), [10.0, -70.0, 60.0, 20.0, 30.0, 40.0]);
+    /// let (flange, six) = (arm.forward(&joints), arm.axes(&joints)[5]);
+    /// assert!(six.nearest(flange.position).distance(flange.position) < 1e-6);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn axes(&self, joints: &Joints) -> [Axis; 6] {
+        self.model.axes(joints)
     }
 
     /// All joint angles, °, that put the flange there, including those beyond a limit. Of a joint's angles that differ

@@ -31,6 +31,13 @@ pub struct Cell<A = ArmTable> {
     pub name: String,
     /// One line of description.
     pub description: String,
+    /// The dialect that its controller reads, such as `krl`; optional: without it no program is known not to fit.
+    #[serde(default)]
+    pub dialect: Option<String>,
+    /// Whether the part lies on a positioner: its axes stand in the profile (`program.positioner`), and the part is where it is with all
+    /// of them at 0°; default no.
+    #[serde(default)]
+    pub positioner: bool,
     /// The robot.
     pub arm: A,
     /// Tool frame on the flange.
@@ -169,8 +176,11 @@ impl Cell {
             CellError::Text { line, reason: explain(e.message()) }
         })?;
         let arm = cell.arm.clone().table(read).map_err(|wrong| wrong.at(text))?;
-        let Cell { name, description, torch, part, scanner, linear_axis, table, home, body, .. } = cell;
-        let cell = Self { name, description, arm, torch, part, scanner, linear_axis, table, home, body };
+        let Cell {
+            name, description, dialect, positioner, torch, part, scanner, linear_axis, table, home, body, ..
+        } = cell;
+        let cell =
+            Self { name, description, dialect, positioner, arm, torch, part, scanner, linear_axis, table, home, body };
         match cell.first_broken() {
             None => Ok(cell),
             Some((key, value, reason)) => Err(CellError::Value { line: line_of_key(text, key), key, value, reason }),

@@ -45,7 +45,7 @@ mod turn;
 pub mod urdf;
 mod walk;
 
-pub use arm::{Arm, Branch, Frame, Joints, Margins};
+pub use arm::{Arm, Axis, Branch, Frame, Joints, Margins};
 pub use arm_table::{ArmTable, OpwTable, Shape};
 pub use body::{Body, Fixture, Solid};
 pub use cell::{Cell, LinearAxis, PartPlace, ScannerPlace, Table};

@@ -3,7 +3,7 @@
 //! The closed forms are those of Brandstötter, Angerer and Hofbaur (2014), as implemented in the crate
 //! `rs-opw-kinematics`. That crate works in metres and radians, which stay within this file.
 
-use crate::arm::{Branch, Frame, Joints, Model, from_zero};
+use crate::arm::{Axis, Branch, Frame, Joints, Model, from_zero};
 use glam::{DQuat, DVec3};
 use rs_opw_kinematics::kinematic_traits::{Kinematics, Pose};
 use rs_opw_kinematics::kinematics_impl::OPWKinematics;
@@ -127,6 +127,25 @@ impl Model for Opw {
         let elbow = link(shoulder, c2, q2);
         let wrist = link(elbow, self.forearm(), q2 + q3 + self.bend());
         [DVec3::ZERO, shoulder, elbow, wrist].map(|place| upright * place)
+    }
+
+    fn axes(&self, joints: &Joints) -> [Axis; 6] {
+        let [q1, q2, q3, q4, q5, _] = self.model(joints);
+        let [foot, shoulder, elbow, wrist] = self.links(joints);
+        let upright = DQuat::from_rotation_z(q1);
+        let forearm = upright * DQuat::from_rotation_y(q2 + q3);
+        let hand = forearm * DQuat::from_rotation_z(q4);
+        let six = hand * DQuat::from_rotation_y(q5) * DVec3::Z;
+        let side = upright * DVec3::Y;
+        let lines = [
+            (foot, DVec3::Z),
+            (shoulder, side),
+            (elbow, side),
+            (wrist, forearm * DVec3::Z),
+            (wrist, hand * DVec3::Y),
+            (wrist, six),
+        ];
+        lines.map(|(at, along)| Axis { at, along })
     }
 
     fn branch(&self, joints: &Joints) -> Branch {

@@ -411,6 +411,10 @@ fn reach_gives_margins_and_refuses_what_is_too_far() {
     let json = ok(folder.path(), &[&reach[..], &["--json"]].concat());
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert!(json["reachable"] == true && json["least_margin"].as_f64().unwrap() > 30.0, "{json}");
+    assert!(json["misfits"].as_array().unwrap().is_empty() && !said.contains("note: The profile"), "{said}");
+    // A robot of another make would not read the program.
+    let said = ok(folder.path(), &["reach", "out/plan.json", "--cell", "ur10e"]);
+    assert!(said.contains("note: The profile writes krl, but the robot of this cell reads urscript"), "{said}");
     let error = refused(folder.path(), &[&reach[..], &["--at", "3000,0,500"]].concat(), 1);
     assert!(error.contains("Layer 1, pass 1, point 1") && error.contains("out of reach"), "{error}");
     let error = refused(folder.path(), &["reach", "out/plan.json", "--cell", "kuka"], 1);
@@ -421,7 +425,7 @@ fn reach_gives_margins_and_refuses_what_is_too_far() {
     let cell = ok(folder.path(), &["reach", "--show", "abb-irb1410"]);
     fs::write(folder.path().join("mine.toml"), cell.replace("c2 = 600.0", "c2 = -1.0")).unwrap();
     let error = refused(folder.path(), &["reach", "out/plan.json", "--cell", "mine.toml"], 1);
-    assert!(error.contains("line 12") && error.contains("arm.c2"), "{error}");
+    assert!(error.contains("line 13") && error.contains("arm.c2"), "{error}");
     assert!(ok(folder.path(), &["reach", "--list"]).contains("ur10e"));
     fs::write(folder.path().join("arm.urdf"), "<robot name=\"none\"/>").unwrap();
     let error = refused(folder.path(), &[&reach[..], &["--urdf", "arm.urdf"]].concat(), 1);

@@ -37,8 +37,8 @@ pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<Answer> {
     let dialog = match what {
         Ask::Open => dialog.add_filter("STL, IGES, BWP", &models),
         Ask::OpenProfile | Ask::OpenBeads => dialog.add_filter("TOML", &["toml"]),
-        Ask::OpenScan => dialog,
-        Ask::Folder => return answered(ctx, what, "Downloads".into()),
+        Ask::OpenScan | Ask::OpenBuildScan => dialog,
+        Ask::Folder | Ask::BatchFolder => return answered(ctx, what, "Downloads".into()),
         Ask::SaveProject => return answered(ctx, what, format!("{name}.bwp").into()),
         Ask::SavePicture => return answered(ctx, what, format!("{name}.png").into()),
     };

@@ -31,8 +31,8 @@ pub fn ask(ctx: &Context, what: Ask, name: &str) -> Job<Answer> {
     let answer: std::pin::Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match what {
         Ask::Open => Box::pin(dialog.clone().add_filter("STL, IGES, BWP", &models).pick_file()),
         Ask::OpenProfile | Ask::OpenBeads => Box::pin(dialog.clone().add_filter("TOML", &["toml"]).pick_file()),
-        Ask::OpenScan => Box::pin(dialog.clone().pick_file()),
-        Ask::Folder => Box::pin(dialog.clone().pick_folder()),
+        Ask::OpenScan | Ask::OpenBuildScan => Box::pin(dialog.clone().pick_file()),
+        Ask::Folder | Ask::BatchFolder => Box::pin(dialog.clone().pick_folder()),
         Ask::SaveProject => Box::pin(named("bwp").save_file()),
         Ask::SavePicture => Box::pin(named("png").save_file()),
     };

@@ -59,7 +59,8 @@ fn found(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui, 
     let (best, farther): (Vec<Placed<'_>>, Vec<Placed<'_>>) =
         all().filter(|(_, way)| way.tried.is_planned()).partition(|(_, way)| !way.farther);
     table(known, view, ui, "best", &best);
-    let refused: Vec<Placed<'_>> = all().filter(|(_, way)| way.refused().is_some()).collect();
+    let refused: Vec<Placed<'_>> =
+        all().filter(|(_, way)| matches!(way.tried.outcome, Outcome::Refused { .. })).collect();
     if !refused.is_empty() {
         ui.separator();
         ui.strong(known.t("cannot-be-welded"));
@@ -103,7 +104,7 @@ fn one_refused(known: Known<'_>, view: &mut View<'_>, ui: &mut Ui, (number, way)
         name(known, view, ui, (number, way));
         ui.label(format!("{} {}", known.t("overhang"), area(way.tried.division.hanging)));
     });
-    ui.label(RichText::new(way.refused().unwrap_or_default()).weak());
+    ui.label(RichText::new(way.tried.refusal().unwrap_or_default()).weak());
 }
 
 /// The number of its bodies; a click shows them in 3-D, another one the beads again.
@@ -129,10 +130,12 @@ fn bodies(known: Known<'_>, way: &Way) -> String {
 fn chosen(known: Known<'_>, queue: &mut Queue, ui: &mut Ui, (number, way): Placed<'_>) {
     ui.label(format!("{}. {}", number + 1, way.tried.about()));
     ui.horizontal_wrapped(|ui| {
-        for (body, colour) in way.tried.bodies.iter().zip((0..).map(palette::body)) {
+        let bodies = way.tried.bodies.iter().map(|body| &*body.name).zip((0..).map(palette::body));
+        let grey = palette::missing(!known.window.settings.light);
+        for (name, colour) in bodies.chain(way.stock.then(|| (known.t("already-there"), grey))) {
             let (place, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
             ui.painter().rect_filled(place, 2.0, theme::ink(colour));
-            ui.label(&body.name);
+            ui.label(name);
         }
     });
     let used = known.parsed().is_some_and(|parsed| way.is_of(&parsed.profile.layers.bodies));

@@ -33,10 +33,13 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     }
     let (planned, judged) = (
         known.plans.own.summary.is_some() && known.plans.own.is_of_last_request(),
-        known.plans.own.total.is_some() && known.plans.own.is_of_last_request(),
+        (known.plans.own.total.is_some() || known.plans.own.adapted.is_some()) && known.plans.own.is_of_last_request(),
     );
     if !judged {
         ui.weak(known.t("not-complete"));
+    }
+    if let Some(adapted) = &known.plans.own.adapted {
+        ui.label(known.t("adapt-export").replace("{layer}", &(adapted.number + 1).to_string()));
     }
     let reasons = known.plans.own.forbidden();
     if !reasons.is_empty() {

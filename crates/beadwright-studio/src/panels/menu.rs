@@ -1,6 +1,6 @@
 //! Menus, and the bar below them: strategy, views, progress.
 
-use super::help;
+use super::{adapt, batch, help};
 use crate::actions::{self, Action};
 use crate::jobs::Ask;
 use crate::known::{Known, Queue, View};
@@ -18,7 +18,9 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
         ui.menu_button(known.t("file"), |ui| {
             items(known, queue, ui, &[Action::Open]);
             ui.menu_button(known.t("recent"), |ui| recent(known, queue, ui));
+            batch::entries(known, view, queue, ui);
             scan(known, queue, ui);
+            adapt::entry(known, queue, ui);
             ui.separator();
             items(known, queue, ui, &[Action::Save, Action::SaveAs, Action::ExportProgram]);
             // A page is closed by its browser.

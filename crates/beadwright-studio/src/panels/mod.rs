@@ -1,6 +1,8 @@
 //! The panels around the views, one file each.
 
+mod adapt;
 mod basic;
+mod batch;
 mod bead;
 mod centre;
 mod clock;
@@ -53,6 +55,7 @@ pub(crate) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     }
     questions::show(known, view, queue, ui);
     help::show(known, view, ui);
+    batch::show(known, view, queue, ui);
 }
 
 /// The panels around the view of a part.
@@ -98,6 +101,9 @@ fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     if known.jobs.dividing.is_some() || view.state.side == Side::Directions {
         tabs.push((Side::Directions, "directions"));
     }
+    if view.state.adapt.is_some() || known.project().adapted.is_some() || view.state.side == Side::Adapt {
+        tabs.push((Side::Adapt, "adapt"));
+    }
     ui.horizontal_wrapped(|ui| {
         for (side, key) in tabs {
             let count = if side == Side::Findings { known.plans.own.found() } else { 0 };
@@ -120,6 +126,7 @@ fn side(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
         Side::Findings => findings::show(known, view, queue, ui),
         Side::Plots => plots::show(known, view, queue, ui),
         Side::Program => {}
+        Side::Adapt => adapt::show(known, view, queue, ui),
         Side::Directions => directions::show(known, view, queue, ui),
         Side::Export => export::show(known, view, queue, ui),
     });

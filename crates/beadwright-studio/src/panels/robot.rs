@@ -3,8 +3,9 @@
 use super::process;
 use crate::actions::Action;
 use crate::known::{Known, Queue, View};
+use beadwright::profile::Misfit;
 use beadwright::program::PositionerAxis;
-use eframe::egui::{TextWrapMode, Ui};
+use eframe::egui::{Label, RichText, TextWrapMode, Ui};
 
 /// The switch that shows the arm; the poses that it needs are computed in the background.
 pub(super) fn switch(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
@@ -30,6 +31,7 @@ pub(super) fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &
         // Lines break between angles, not within them.
         ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
         process::cell(known, view, queue, ui);
+        misfits(known, ui);
         if known.jobs.reach.is_none() {
             ui.weak(known.t("reach-runs"));
             return;
@@ -44,6 +46,24 @@ pub(super) fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &
         }
         ui.weak(format!("{}: {:.1}°", known.t("margin-here"), arm.margin));
     });
+}
+
+/// In what the cell does not fit the profile.
+pub(super) fn misfits(known: Known<'_>, ui: &mut Ui) {
+    let Some((cell, profile)) = known.jobs.cell.as_ref().zip(known.plans.own.profile.as_ref()) else { return };
+    for misfit in profile.misfits(cell) {
+        let text = match &misfit {
+            Misfit::Dialect { reads, written } => {
+                known.t("misfit-dialect").replace("{written}", written).replace("{reads}", reads)
+            }
+            Misfit::NoPositioner => known.t("misfit-no-positioner").to_owned(),
+            Misfit::IdlePositioner => known.t("misfit-idle-positioner").to_owned(),
+            Misfit::NoTable => known.t("misfit-no-table").to_owned(),
+            Misfit::NoLinearAxis => known.t("misfit-no-linear-axis").to_owned(),
+        };
+        let label = Label::new(RichText::new(text).color(ui.visuals().warn_fg_color)).wrap();
+        ui.add(label).on_hover_text(misfit.sentence());
+    }
 }
 
 /// The angles of the positioner's axes now, and their limits.

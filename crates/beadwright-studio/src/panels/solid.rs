@@ -58,7 +58,7 @@ pub(super) fn picture(
     style: &Style,
     label: &str,
 ) -> Rect {
-    view.solid.caption = caption(known, view);
+    view.solid.caption = caption(known, view, style);
     view.solid.no_adapter = known.t("no-adapter").to_owned();
     view.solid.pin = view.state.pin.as_ref().map(|pin| pin.at);
     view.solid.camera.orthographic = view.state.parallel;
@@ -209,13 +209,14 @@ pub(super) fn scale(ui: &mut Ui, colour_at: impl Fn(f64) -> palette::Rgb) {
     }
 }
 
-/// The size of the plate, and what the grid on it shows.
-fn caption(known: Known<'_>, view: &View<'_>) -> String {
+/// The size of the plate, and what the grid on it or on the floor shows.
+fn caption(known: Known<'_>, view: &View<'_>, style: &Style) -> String {
     let plate = known.plate().filter(|_| view.state.plate).map(|plate| {
         let size = plate.high - plate.low;
         format!("{} {:.0} × {:.0} × {:.0} mm, ", known.t("show-plate"), size.x, size.y, plate.thickness)
     });
-    format!("{}{}", plate.unwrap_or_default(), known.t("grid"))
+    let grid = if style.floor.is_some() { "grid-floor" } else { "grid" };
+    format!("{}{}", plate.unwrap_or_default(), known.t(grid))
 }
 
 /// The picked bead: the piece of its pass that the segment belongs to.

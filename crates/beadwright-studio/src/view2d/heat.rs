@@ -19,7 +19,8 @@ pub fn height(value: u8) -> Option<f64> {
     value.checked_sub(picture::FIRST_HEIGHT).map(|v| f64::from(v) * step)
 }
 
-pub(super) fn image(map: &Picture) -> ColorImage {
+/// A picture of heights; empty where there is no metal.
+pub(crate) fn image(map: &Picture) -> ColorImage {
     let pixel = |value: u8| match value {
         picture::EMPTY => Color32::TRANSPARENT,
         picture::VOID_PIXEL => VOID,

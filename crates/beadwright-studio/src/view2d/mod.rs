@@ -25,7 +25,8 @@ use eframe::egui::{
     pos2, vec2,
 };
 use glam::DVec2;
-use heat::{VOID, image};
+use heat::VOID;
+pub(crate) use heat::image;
 use pen::Pen;
 use std::sync::Arc;
 

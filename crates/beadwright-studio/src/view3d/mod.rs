@@ -12,6 +12,7 @@
 //! | `bent` | how far plate and beads move as they cool |
 //! | `style`, [`palette`] | what is shown and in which colours |
 //! | `section` | a plane that cuts away what lies beyond it |
+//! | `shape` | what stands around the part: bodies of revolution, boxes, the floor |
 //! | `camera` | where the eye is |
 //! | `pick`, `face` | which segment, which face of the model is under the pointer |
 //! | `gpu` | buffers, shaders, pictures |
@@ -34,6 +35,7 @@ mod pick;
 mod scanned;
 mod scene;
 mod section;
+mod shape;
 mod style;
 mod widget;
 
@@ -42,6 +44,7 @@ pub use bent::Bent;
 pub use camera::{Camera, StandardView};
 pub use face::face;
 pub use gizmo::{Gizmo, Grip, Handle, Moved};
+pub(crate) use gpu::BELOW;
 pub use headless::headless;
 pub use lie::Stance;
 pub use overlay::ring;
@@ -49,5 +52,6 @@ pub use pick::{Pick, pick};
 pub use scanned::Scanned;
 pub use scene::{Position, Scene};
 pub use section::Section;
+pub use shape::{Floor, Look, Shape};
 pub use style::{Colour, Plate, Style};
 pub use widget::{Shown, Timing, View3d};

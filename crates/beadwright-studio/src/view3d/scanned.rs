@@ -1,12 +1,16 @@
 //! A scan as it is drawn: its points, each with the colour of its deviation; and the part in the colours of its bodies.
 
 use super::palette::STEPS;
-use beadwright::model::{Mesh, Milled};
+use beadwright::directions::Metal;
+use beadwright::model::Milled;
 use glam::DVec3;
 
 /// Fraction of the points whose deviation the colours resolve; those beyond get the colour at the end, so that a little
 /// spatter does not use up the colours.
 const SHARE: f64 = 0.99;
+
+/// The place in the colour map of what has no colour of its own (`scan.wgsl`).
+const NONE: f32 = -1.0;
 
 /// The smallest deviation that an end of the colours stands for, mm.
 const FINEST_MM: f64 = 0.01;
@@ -47,14 +51,14 @@ impl Scanned {
         Self::new(&points, &triangles, &over)
     }
 
-    /// The bodies of a part, each in its own colour; `None` if all of them are empty.
-    pub fn pieces(bodies: &[Mesh]) -> Option<Self> {
+    /// The metal of a part, each body in its own colour and stock without one; `None` if there is none.
+    pub fn pieces(metal: &[Metal]) -> Option<Self> {
         let (mut points, mut triangles) = (Vec::new(), Vec::new());
-        for (number, body) in bodies.iter().enumerate() {
+        for Metal { mesh, body, stock } in metal {
             let first = points.len() as u32;
-            let colour = (number % STEPS) as f32 / (STEPS - 1) as f32;
-            points.extend(body.vertices.iter().map(|at| <[f32; 4]>::from(at.as_vec3().extend(colour))));
-            triangles.extend(body.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
+            let colour = if *stock { NONE } else { (body % STEPS) as f32 / (STEPS - 1) as f32 };
+            points.extend(mesh.vertices.iter().map(|at| <[f32; 4]>::from(at.as_vec3().extend(colour))));
+            triangles.extend(mesh.triangles.iter().map(|corners| corners.map(|corner| corner + first)));
         }
         (!triangles.is_empty()).then_some(Self { points, triangles, range: 0.0 })
     }

@@ -88,6 +88,16 @@ impl Scene {
         self.version = fresh_id();
     }
 
+    /// Forgets the layers from this index on.
+    pub fn truncate(&mut self, count: usize) {
+        self.layers.truncate(count);
+        self.values.truncate(count);
+        self.temperatures.truncate(count);
+        self.leans.truncate(count);
+        self.bend = None;
+        self.version = fresh_id();
+    }
+
     /// Sets the model, mm.
     pub fn set_mesh(&mut self, mesh: Option<Arc<Mesh>>) {
         self.mesh = mesh;

@@ -3,7 +3,7 @@
 use super::lie::Stance;
 use super::pick::Pick;
 use super::section::Section;
-use beadwright::robot::body::Capsule;
+use super::shape::{Floor, Shape};
 use glam::DVec2;
 use std::ops::RangeInclusive;
 
@@ -75,8 +75,10 @@ pub struct Style {
     pub section: Option<Section>,
     /// The plate below the part.
     pub plate: Option<Plate>,
-    /// The links of the robot's arm; in the part's space.
-    pub arm: Vec<Capsule>,
+    /// Robot, positioner and table; in the part's space.
+    pub around: Vec<Shape>,
+    /// The floor on which they stand; the grid below the part gives way to its own.
+    pub floor: Option<Floor>,
     /// Where the torch is drawn.
     pub torch: Option<Stance>,
     /// The highlighted pass, and a segment in it.
@@ -102,7 +104,8 @@ impl Default for Style {
             segments_of_last: None,
             section: None,
             plate: None,
-            arm: Vec::new(),
+            around: Vec::new(),
+            floor: None,
             torch: None,
             highlight: None,
             dark: true,

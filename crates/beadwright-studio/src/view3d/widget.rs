@@ -5,6 +5,7 @@ use super::camera::Camera;
 use super::gpu::{Gpu, Quality, Target};
 use super::pick::{Pick, pick};
 use super::scene::Scene;
+use super::shape::Shape;
 use super::style::Style;
 use super::{gpu, overlay};
 use crate::theme::ink;
@@ -152,9 +153,8 @@ impl View3d {
             self.fit = true;
         }
         if self.fit && scene.bounds().is_some() {
-            let reach = |radius: f64| [-radius, radius].map(DVec3::splat);
-            let arm = style.arm.iter().flat_map(|link| link.ends.map(|end| reach(link.radius).map(|by| end + by)));
-            let seen = scene.outline().into_iter().chain(arm.flatten()).chain(self.around.iter().copied());
+            let machine = style.around.iter().flat_map(Shape::bounds);
+            let seen = scene.outline().into_iter().chain(machine).chain(self.around.iter().copied());
             self.camera.fit_points(&seen.collect::<Vec<_>>(), size);
             self.fit = false;
         }

@@ -11,7 +11,9 @@ use beadwright_studio::arm::stand;
 use beadwright_studio::holding::held;
 use beadwright_studio::holding::{Come, Place};
 use beadwright_studio::level::leans;
-use beadwright_studio::view3d::{Camera, Colour, Scene, StandardView, Style, View3d, face, headless, palette, pick};
+use beadwright_studio::view3d::{
+    Camera, Colour, Scene, Shape, StandardView, Style, View3d, face, headless, palette, pick,
+};
 use glam::{DQuat, DVec2, DVec3};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -276,13 +278,13 @@ fn pictures() {
                     layers: 0..=now.layer,
                     segments_of_last: Some(now.segment),
                     torch: Some(now.torch),
-                    arm: arm.map(|arm| arm.links).unwrap_or_default(),
+                    around: arm.map(|arm| arm.shapes).unwrap_or_default(),
                     plate: None,
                     ..Style::default()
                 };
                 let mut view = View3d::default();
                 view.camera.held = held(&part.reach.poses, &place).map_or(Frame::IDENTITY, Frame::from);
-                let links = style.arm.iter().flat_map(|link| link.ends);
+                let links = style.around.iter().flat_map(Shape::bounds);
                 view.camera.fit_points(&part.scene.outline().into_iter().chain(links).collect::<Vec<_>>(), SIZE);
                 let (width, height, pixels) = view.picture(&state, &part.scene, &style, [900, 700]).unwrap();
                 let path =

@@ -1,13 +1,16 @@
 //! The part in the colours of its bodies, as pixels.
 
+use beadwright::directions::Metal;
 use beadwright::glam::{DVec2, DVec3};
 use beadwright::model::Mesh;
 use beadwright::model::solid::Solid;
-use beadwright::palette::BODIES;
+use beadwright::palette::{BODIES, missing};
 use beadwright::planar::{Polygon, Ring};
 use beadwright_studio::view3d::{Camera, Scanned, Scene, StandardView, Style, View3d, headless};
 use std::sync::Arc;
 
+/// The cube that is there already.
+const STOCK: usize = 6;
 const PIXELS: [u32; 2] = [200, 100];
 
 /// A cube of 10 mm that begins at this x.
@@ -19,12 +22,13 @@ fn cube(x: f64) -> Mesh {
 }
 
 #[test]
-fn every_body_has_its_own_colour_and_colours_repeat() {
+fn every_body_has_its_own_colour_colours_repeat_and_stock_is_grey() {
     let Ok(state) = headless() else {
         println!("pictures are skipped: there is nothing to draw with");
         return;
     };
-    let cubes: Vec<Mesh> = (0..10).map(|number| cube(12.0 * f64::from(number))).collect();
+    let of = |number: usize| Metal { mesh: cube(12.0 * number as f64), body: number, stock: number == STOCK };
+    let cubes: Vec<Metal> = (0..10).map(of).collect();
     let mut scene = Scene::default();
     scene.show_pieces(Scanned::pieces(&cubes).map(Arc::new));
     let mut view = View3d::default();
@@ -47,6 +51,10 @@ fn every_body_has_its_own_colour_and_colours_repeat() {
     for (number, ink) in shown.iter().enumerate() {
         // Light changes the length of a colour, hardly its direction.
         let off = |colour: [u8; 3]| ink.angle_between(DVec3::from_array(colour.map(f64::from)));
+        if number == STOCK {
+            assert!(off(missing(true)) < 0.03, "{number}: {ink} is not grey");
+            continue;
+        }
         let own = off(BODIES[number % BODIES.len()]);
         assert!(own < 0.12, "{number}: {ink} is off by {own:.2}");
         let nearest = BODIES.into_iter().map(off).fold(f64::MAX, f64::min);

@@ -30,6 +30,7 @@ fn a_project_comes_back_exactly() {
                 preform: true,
                 height: Some(0.1 + 0.2),
                 profile: profile.clone(),
+                adapted: None,
             };
             let written = project.write(None).unwrap();
             assert_eq!(Project::read(&written, None).unwrap(), project, "{written}");

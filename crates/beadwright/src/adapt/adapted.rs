@@ -142,6 +142,18 @@ impl Adapted {
         })
     }
 
+    /// What the layers that are welded and those that follow have in common; `planned` is that of the plan.
+    pub fn header(&self, planned: &Header) -> Header {
+        let layers = self.number + self.followed.layers.len();
+        Header { extent: Extent { layers, ..planned.extent }, ..planned.clone() }
+    }
+
+    /// The totals of the layers that are welded and of those that follow, given their metrics.
+    pub fn summary(&self, metrics: Metrics, profile: &Profile) -> Summary {
+        let (warnings, forbidden) = (Warnings::default(), profile.forbidden());
+        Summary { metrics, warnings, notes: self.sentences(), forbidden, blocked: Vec::new(), grown: None }
+    }
+
     /// Hands over the text of all files, piece by piece: the programs of the layers that follow, the whole plan with them,
     /// and the page `adapt.html`; only the page where no layer follows.
     ///
@@ -162,7 +174,7 @@ impl Adapted {
             return Ok(());
         }
         let all = || built.iter().chain(&self.followed.layers);
-        let header = Header { extent: Extent { layers: all().count(), ..header.extent }, ..header.clone() };
+        let header = self.header(header);
         let selection = Selection { from: number, ..Selection::default() };
         let (mut files, chunks) = PlanFiles::begin(&header, profile, programs, selection)?;
         take(chunks)?;
@@ -171,9 +183,8 @@ impl Adapted {
             metrics.add(layer);
             take(files.layer(layer, None))?;
         }
-        let notes = sentences.into_iter().chain(files.notes()).collect();
-        let (warnings, forbidden) = (Warnings::default(), profile.forbidden());
-        let summary = Summary { metrics, warnings, notes, forbidden, blocked: Vec::new(), grown: None };
+        let mut summary = self.summary(metrics, profile);
+        summary.notes.extend(files.notes());
         take(files.end(&summary, &RepairReport::default(), None)?)
     }
 }

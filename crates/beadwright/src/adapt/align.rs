@@ -10,7 +10,8 @@ use glam::{DMat3, DVec2, DVec3};
 use planar::{Region, polyline};
 
 /// How a scan is aligned with the part.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Align {
     /// Not moved: its coordinates are already those of the part.
     #[default]

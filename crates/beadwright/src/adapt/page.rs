@@ -29,14 +29,37 @@ pub(crate) fn relief(surface: &Surface, most: f64, height: impl Fn(usize) -> Opt
     }
 }
 
-/// The ends of a scale of heights, in words.
-pub(crate) fn key(most: f64) -> [String; 2] {
-    ["below", "above"].map(|word| format!("{} mm {word}", fixed(most, 2)))
-}
-
 /// Heights as cells of a table: mean, root mean square, lowest, highest.
 pub(crate) fn cells(spread: &Spread) -> Row {
     [spread.mean, spread.rms, spread.low, spread.high].map(|height| (format!("{height:+.2}"), false)).into()
+}
+
+/// The heights of a scan and of its plan as pictures: what is as planned has the middle of the colours.
+#[derive(Debug, Clone)]
+pub struct Reliefs {
+    /// What the ends of the colours stand for, mm.
+    pub most: f64,
+    /// What the plan predicts, above the planned top.
+    pub predicted: Picture,
+    /// What was measured, above the planned top.
+    pub measured: Picture,
+    /// Measured minus predicted.
+    pub difference: Picture,
+}
+
+impl Reliefs {
+    /// The pictures of a scan.
+    pub fn of(seen: &Seen) -> Self {
+        let error = |i: usize| seen.surface.error(i);
+        let measured = |i: usize| Some(seen.predicted[i]? + error(i)?);
+        let most = [seen.error.low, seen.error.high].into_iter().fold(0.1, |most: f64, error| most.max(error.abs()));
+        Self {
+            most,
+            predicted: relief(&seen.surface, most, |i| seen.predicted[i]),
+            measured: relief(&seen.surface, most, measured),
+            difference: relief(&seen.surface, most, error),
+        }
+    }
 }
 
 /// The page of layer `number`, from 1, whose top is planned at `z` (mm), of a part.
@@ -51,15 +74,13 @@ pub fn page(part: &str, number: usize, z: f64, seen: &Seen, sentences: &[String]
     });
     let head = ["mean mm", "RMS mm", "lowest mm", "highest mm"];
     sheet.heading("Measured minus predicted").table(&head, &[cells(&seen.error)]);
-    let error = |i: usize| seen.surface.error(i);
-    let measured = |i: usize| Some(seen.predicted[i]? + error(i)?);
-    let most = [seen.error.low, seen.error.high].into_iter().fold(0.1, |most: f64, error| most.max(error.abs()));
+    let Reliefs { most, predicted, measured, difference } = Reliefs::of(seen);
     let pictures = [
-        ("predicted, above the planned top", relief(&seen.surface, most, |i| seen.predicted[i])),
-        ("measured, above the planned top", relief(&seen.surface, most, measured)),
-        ("measured minus predicted", relief(&seen.surface, most, error)),
+        ("predicted, above the planned top", &predicted),
+        ("measured, above the planned top", &measured),
+        ("measured minus predicted", &difference),
     ];
-    let columns: Vec<_> = pictures.iter().map(|(name, picture)| ((*name).to_owned(), vec![Some(picture)])).collect();
-    sheet.heading("Pictures").heights(&key(most), &[format!("layer {number}")], &columns);
+    let columns: Vec<_> = pictures.iter().map(|(name, picture)| ((*name).to_owned(), vec![Some(*picture)])).collect();
+    sheet.heading("Pictures").heights(most, &[format!("layer {number}")], &columns);
     sheet
 }

@@ -2,7 +2,7 @@
 
 use super::{Built, Settings};
 use crate::adapt::Feedback;
-use crate::adapt::page::{cells, key};
+use crate::adapt::page::cells;
 use crate::deposit::Picture;
 use crate::number::fixed;
 use crate::report::plot::{Curve, Plot};
@@ -83,7 +83,7 @@ fn pictures(sheet: &mut Sheet, builds: &[Built]) {
         .map(|built| (name(built.by).to_owned(), shown.iter().map(|&i| picture(built, i)).collect()))
         .collect();
     let most = builds.first().map_or(1.0, |built| built.layer_height);
-    sheet.heading("The top after a layer, against its target").heights(&key(most), &labels, &columns);
+    sheet.heading("The top after a layer, against its target").heights(most, &labels, &columns);
 }
 
 fn picture(built: &Built, layer: usize) -> Option<&Picture> {

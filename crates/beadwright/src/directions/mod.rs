@@ -1,9 +1,11 @@
 //! Ways to divide a part into bodies, each planned for trial, so that what is offered first can be welded.
 
+mod metal;
 pub mod page;
 mod sentence;
 
 pub use bead_part::directions::{Division, Piece, Settings, by_planes, divisions};
+pub use metal::{Metal, metal};
 
 use crate::dialect::{self, own};
 use crate::layer::Layer;

@@ -1,14 +1,16 @@
 //! The page of the divisions of a part: each in 3-D with its bodies in colours, and the figures of all.
 
 use super::sentence::layers;
-use super::{Found, Outcome, Tried};
-use crate::chart::{Bound, Chart, Cylinder};
+use super::{Found, Metal, Outcome, Tried, metal};
 use crate::model::Mesh;
 use crate::number::fixed;
 use crate::palette;
 use crate::profile::Body;
 use crate::report::coloured::Coloured;
 use crate::report::sheet::{Row, Sheet};
+
+/// What the picture of a division is called.
+const PICTURE: &str = "The part in its bodies";
 
 /// The page; `mesh` is the part that was divided.
 pub fn page(name: &str, mesh: &Mesh, found: &Found) -> Sheet {
@@ -41,7 +43,12 @@ pub fn page(name: &str, mesh: &Mesh, found: &Found) -> Sheet {
         if let Some(verdict) = tried.verdict() {
             sheet.text(&verdict);
         }
-        sheet.coloured("The part in its bodies", &coloured(mesh, &tried.bodies));
+        sheet.coloured(PICTURE, &coloured(mesh, &tried.bodies));
+    }
+    // It has no number, since it cannot be chosen without more tilt.
+    if let (Some(tilted), Some(sentence)) = (&found.tilted, found.about_tilted()) {
+        sheet.heading(&format!("Tilted farther: {}", tilted.about())).text(&sentence);
+        sheet.coloured(PICTURE, &coloured(mesh, &tilted.bodies));
     }
     sheet
 }
@@ -72,18 +79,12 @@ fn row(number: usize, tried: &Tried) -> Row {
 /// The part with each body in a colour of its own, and grey what must be there already.
 fn coloured(mesh: &Mesh, bodies: &[Body]) -> Coloured {
     let mut surfaces = Coloured::default();
-    for (k, body) in bodies.iter().enumerate() {
-        let whole = body.of_mesh(mesh);
-        let name = format!("{}: {}", body.name, layers(&body.chart));
-        let Chart::Cylinder(around) = &body.chart else {
-            surfaces.add(&name, &whole, palette::body(k));
-            continue;
-        };
-        // Below its first layer lies metal of other bodies, or stock.
-        surfaces.add(&name, &Bound::Cylinder(*around).part_of(&whole), palette::body(k));
-        if body.on_stock {
-            let inside = Cylinder { side: around.side.other(), ..*around };
-            surfaces.add("already there", &Bound::Cylinder(inside).part_of(&whole), palette::missing(false));
+    for Metal { mesh, body, stock } in metal(mesh, bodies) {
+        if stock {
+            surfaces.add("already there", &mesh, palette::missing(false));
+        } else {
+            let Body { name, chart, .. } = &bodies[body];
+            surfaces.add(&format!("{name}: {}", layers(chart)), &mesh, palette::body(body));
         }
     }
     surfaces

@@ -1,6 +1,6 @@
 //! Divisions in sentences.
 
-use super::{Division, Outcome, Tried};
+use super::{Division, Found, Outcome, Tried};
 use crate::chart::Chart;
 use glam::DVec3;
 
@@ -32,15 +32,27 @@ impl Tried {
                 let hours = metrics.total_time_s / 3600.0;
                 Some(format!("It can be welded: {hours:.2} h, {:.2} kg of wire{price}.", metrics.wire_mass_kg))
             }
-            Outcome::Refused { reason, orders, .. } => {
-                let tried = match orders {
-                    0 => String::new(),
-                    1 => " The other order was tried, too.".to_owned(),
-                    orders => format!(" {orders} other orders were tried, too."),
-                };
-                Some(format!("It cannot be welded: {reason}{tried}"))
-            }
+            Outcome::Refused { .. } => Some(format!("It cannot be welded: {}", self.refusal()?)),
         }
+    }
+
+    /// Why it cannot be welded, and what was tried; `None` if it can be, or was not planned.
+    pub fn refusal(&self) -> Option<String> {
+        let Outcome::Refused { reason, orders, .. } = &self.outcome else { return None };
+        Some(match orders {
+            0 => reason.clone(),
+            1 => format!("{reason} The other order was tried, too."),
+            orders => format!("{reason} {orders} other orders were tried, too."),
+        })
+    }
+}
+
+impl Found {
+    /// What could be welded if its layers may lie farther from level ([`Found::tilted`]), as a sentence.
+    pub fn about_tilted(&self) -> Option<String> {
+        let Tried { division, bodies, .. } = self.tilted.as_ref()?;
+        let (tilt, pieces) = (division.tilt.ceil(), bodies.len());
+        Some(format!("As {pieces} bodies it could be welded with --tilt {tilt}, if the part can be turned so far."))
     }
 }
 

@@ -37,9 +37,6 @@ const CHOICES = {
   heat: { field: 0 },
 };
 
-// Position of a value within a range, 0 to 1; the middle if the range is a single value.
-const partOf = (value, [low, high]) => high > low ? (value - low) / (high - low) : 0.5;
-
 // The colour of the piece after a point; `t` is its time in the layer, s.
 function colourOf(pass, i, t, layer) {
   const choice = CHOICES[shown.by], value = choice.of?.(pass, i, t, layer);
@@ -63,15 +60,10 @@ function showKey() {
   drawKey($("ramp"), part => rampAt(part, ramp));
 }
 
-// Gives the colours a range: both ends from their fields, of which those left as they were keep what they round.
+// Gives the colours the range of their fields.
 function setRange() {
-  const choice = CHOICES[shown.by], { per = 1, digits } = choice;
-  const range = ["range-low", "range-high"].map((id, i) => {
-    const { value } = $(id), before = choice.range[i];
-    return value === (before / per).toFixed(digits) ? before : value === "" ? NaN : per * Number(value);
-  });
-  // Ends that meet or cross would leave no colours between them.
-  if (range[0] < range[1]) {
+  const choice = CHOICES[shown.by], range = typedRange([$("range-low"), $("range-high")], choice.range, choice.digits, choice.per);
+  if (range) {
     choice.whole ??= choice.range;
     choice.range = range;
   }

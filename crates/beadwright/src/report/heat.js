@@ -10,16 +10,34 @@ function heatAt(height) {
   return a.map((v, k) => v + (b[k] - v) * Math.min(Math.max((height - low) / (high - low), 0), 1));
 }
 
-const PALETTE = Array.from({ length: 256 }, (_, v) =>
-  v === EMPTY ? [0, 0, 0, 0] : v === VOID ? [...VOID_COLOUR, 255] : [...heatAt((v - FIRST_HEIGHT) / (255 - FIRST_HEIGHT) * FULL_SCALE), 255]);
+// Position of a value within a range, 0 to 1; the middle if the range is a single value.
+const partOf = (value, [low, high]) => high > low ? (value - low) / (high - low) : 0.5;
+
+// The colours of the values of a picture that stands for `whole`, where those of the scale are to stand for `range`.
+const paletteOf = (whole, range) => Array.from({ length: 256 }, (_, v) => {
+  if (v === EMPTY) return [0, 0, 0, 0];
+  if (v === VOID) return [...VOID_COLOUR, 255];
+  const value = whole[0] + (v - FIRST_HEIGHT) / (255 - FIRST_HEIGHT) * (whole[1] - whole[0]);
+  return [...heatAt(FULL_SCALE * Math.min(Math.max(partOf(value, range), 0), 1)), 255];
+});
+
+const PALETTE = paletteOf([0, FULL_SCALE], [0, FULL_SCALE]);
+
+// The range that two fields give, in units of `per`; those left as they were keep what they round. None where the ends meet or cross:
+// that would leave no colours between them.
+function typedRange(fields, before, digits, per = 1) {
+  const range = fields.map(({ value }, i) =>
+    value === (before[i] / per).toFixed(digits) ? before[i] : value === "" ? NaN : per * Number(value));
+  return range[0] < range[1] ? range : undefined;
+}
 
 // The image has its lowest row first, as the part's y runs.
-async function readMap(text) {
+async function readMap(text, palette = PALETTE) {
   if (!text) return null;
   const body = await inflate(bytesOf(text)), numbers = new DataView(body.buffer);
   const [x, y, pixel, columns, rows] = [0, 1, 2, 3, 4].map(i => numbers.getFloat64(8 * i, true));
   const values = body.subarray(40), image = new ImageData(columns, rows);
-  for (let i = 0; i < values.length; i++) image.data.set(PALETTE[values[i]], 4 * i);
+  for (let i = 0; i < values.length; i++) image.data.set(palette[values[i]], 4 * i);
   const canvas = document.createElement("canvas");
   Object.assign(canvas, { width: columns, height: rows });
   canvas.getContext("2d").putImageData(image, 0, 0);

@@ -6,8 +6,8 @@ function make(name, parent, properties = {}) {
   return node;
 }
 
-async function paint(canvas, text) {
-  const size = canvas.clientWidth, ratio = window.devicePixelRatio || 1, map = await readMap(text);
+async function paint(canvas, text, palette) {
+  const size = canvas.clientWidth, ratio = window.devicePixelRatio || 1, map = await readMap(text, palette);
   canvas.width = canvas.height = Math.round(size * ratio);
   if (!map) return;
   const scale = 0.94 * canvas.width / Math.max(map.width, map.height), ctx = canvas.getContext("2d");
@@ -39,14 +39,27 @@ function hintAtWide(card) {
 
 function showMaps(card) {
   const data = JSON.parse(card.querySelector("script").textContent);
+  // In mm, or in bead heights.
+  const whole = data.span ?? [0, FULL_SCALE], digits = 2;
+  let range = whole;
   const key = make("div", card, { className: "key" });
-  const [low, high] = data.key ?? ["0", "2 × bead height"];
-  key.append(low);
-  const ramp = make("canvas", key, { width: 160, height: 12 });
+  const field = word => {
+    const input = make("input", key, { type: "number", step: 10 ** -digits });
+    input.setAttribute("aria-label", `${word} value of the colours`);
+    return input;
+  };
+  const low = field("Lowest"), ramp = make("canvas", key, { width: 160, height: 12 }), high = field("Highest"), ends = [low, high];
   ramp.setAttribute("aria-hidden", "true");
   drawKey(ramp, part => heatAt(FULL_SCALE * part));
-  key.append(high);
-  if (!data.key) {
+  key.append(data.span ? "mm" : "× bead height");
+  const reset = make("button", key, { textContent: "↺", title: "The whole range" });
+  reset.setAttribute("aria-label", "The whole range");
+  const write = () => {
+    ends.forEach((end, i) => { end.value = range[i].toFixed(digits); });
+    reset.hidden = range.every((end, i) => end === whole[i]);
+  };
+  write();
+  if (!data.span) {
     make("i", key);
     key.append("void");
   }
@@ -61,8 +74,11 @@ function showMaps(card) {
   const show = () => canvases.forEach((canvas, k) => {
     const { name, maps } = data.columns[k];
     canvas.setAttribute("aria-label", `Heights of ${name}, ${data.labels[at]}`);
-    paint(canvas, maps[at]);
+    paint(canvas, maps[at], paletteOf(whole, range));
   });
+  const set = to => { range = to; write(); show(); };
+  low.onchange = high.onchange = () => set(typedRange(ends, range, digits) ?? range);
+  reset.onclick = () => set(whole);
   slide(card, data.labels, at, "Layer of the heights", to => { at = to; show(); });
   show();
   window.addEventListener("resize", show);

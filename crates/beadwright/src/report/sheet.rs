@@ -107,17 +107,12 @@ impl Sheet {
         self.fields("null", labels, columns)
     }
 
-    /// Like [`Self::maps`], with heights other than those of beads: `key` names the ends of their scale.
-    pub fn heights(
-        &mut self,
-        key: &[String; 2],
-        labels: &[String],
-        columns: &[(String, Vec<Option<&Picture>>)],
-    ) -> &mut Self {
-        self.fields(&format!("[{},{}]", json(&key[0]), json(&key[1])), labels, columns)
+    /// Like [`Self::maps`], with heights other than those of beads: their scale ends `most` mm below and above 0.
+    pub fn heights(&mut self, most: f64, labels: &[String], columns: &[(String, Vec<Option<&Picture>>)]) -> &mut Self {
+        self.fields(&format!("[{},{most}]", -most), labels, columns)
     }
 
-    fn fields(&mut self, key: &str, labels: &[String], columns: &[(String, Vec<Option<&Picture>>)]) -> &mut Self {
+    fn fields(&mut self, span: &str, labels: &[String], columns: &[(String, Vec<Option<&Picture>>)]) -> &mut Self {
         let map = |picture: &Option<&Picture>| format!("\"{}\"", picture.map(encode::map).unwrap_or_default());
         let column = |(name, pictures): &(String, Vec<Option<&Picture>>)| {
             let maps: Vec<String> = pictures.iter().map(map).collect();
@@ -126,7 +121,7 @@ impl Sheet {
         let columns: Vec<String> = columns.iter().map(column).collect();
         let labels: Vec<String> = labels.iter().map(|label| json(label)).collect();
         self.push(&format!(
-            "<div class=\"card maps\"><script type=\"application/json\">{{\"key\":{key},\"labels\":[{}],\"columns\":[{}]}}</script></div>",
+            "<div class=\"card maps\"><script type=\"application/json\">{{\"span\":{span},\"labels\":[{}],\"columns\":[{}]}}</script></div>",
             labels.join(","),
             columns.join(",\n")
         ))

@@ -313,5 +313,5 @@ fn a_cell_names_its_urdf_file() {
     ] {
         assert!(error.to_string().contains(words), "{error}");
     }
-    assert!(Cell::parse(&text.replace("180.7", "1e9")).unwrap_err().to_string().starts_with("line 9"));
+    assert!(Cell::parse(&text.replace("180.7", "1e9")).unwrap_err().to_string().starts_with("line 10"));
 }

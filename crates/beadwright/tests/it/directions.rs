@@ -5,7 +5,7 @@ use crate::common;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use beadwright::chart::Bound;
-use beadwright::directions::{Found, Outcome, Settings, divisions, page, tried, untried};
+use beadwright::directions::{Found, Outcome, Settings, divisions, metal, page, tried, untried};
 use beadwright::example;
 use beadwright::layer::Layer;
 use beadwright::model::{Mesh, solid::Solid};
@@ -235,4 +235,31 @@ fn the_page_of_divisions_shows_all_bodies() {
     let hub = example::find("hub").unwrap().mesh();
     let found = untried("hub", &imported(hub.clone()), settings, &Task::new()).unwrap();
     assert!(page::page("hub", &hub, &found).html().contains("already there"));
+    let blades = &found.divisions[0].bodies;
+    let stock: f64 = metal(&hub, blades).iter().filter(|metal| metal.stock).map(|metal| metal.mesh.volume()).sum();
+    assert!(stock > 0.1 * hub.volume(), "{stock} mm³ are there already");
+}
+
+/// What could be welded with more tilt is on the page, in the words of the command.
+#[test]
+fn the_page_says_what_more_tilt_would_allow() {
+    let mesh = tree(150.0, &[(90.0, 0.0, 50.0, 90.0)]);
+    let profile = profile("cmt-al2319-kuka");
+    let settings = Settings::usual(profile.bead.width);
+    let mut found = untried("tree", &imported(mesh.clone()), settings, &Task::new()).unwrap();
+    let plain = page::page("tree", &mesh, &found).html();
+    found.tilted = found.divisions.first().cloned();
+    let sentence = found.about_tilted().unwrap();
+    assert!(sentence.contains("--tilt") && !plain.contains(&sentence), "{sentence}");
+    let html = page::page("tree", &mesh, &found).html();
+    assert!(html.contains(&sentence));
+    let pictures = |html: &str| html.matches("class=\"card coloured\"").count();
+    assert_eq!(pictures(&html), pictures(&plain) + 1);
+    // What was tried in vain is named with the reason, there and in the studio.
+    for (orders, tried) in [(0, ""), (1, " The other order was tried, too."), (4, " 4 other orders were tried, too.")] {
+        let division = &mut found.divisions[0];
+        division.outcome = Outcome::Refused { reason: "No room.".to_owned(), hangs: false, orders };
+        assert_eq!(division.refusal(), Some(format!("No room.{tried}")));
+        assert_eq!(division.verdict(), Some(format!("It cannot be welded: No room.{tried}")));
+    }
 }

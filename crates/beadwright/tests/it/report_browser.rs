@@ -6,11 +6,12 @@ use crate::common;
 
 use beadwright::check;
 use beadwright::compare;
-use beadwright::deposit::Judge;
+use beadwright::deposit::{Judge, Picture, picture};
 use beadwright::example;
 use beadwright::fill::StrategyName;
 use beadwright::finding::{Finding, Severity};
 use beadwright::model::RepairReport;
+use beadwright::palette;
 use beadwright::pass::Along;
 use beadwright::plan::{self, Plan};
 use beadwright::profile::Profile;
@@ -19,7 +20,7 @@ use beadwright::report::bent::Bent;
 use beadwright::report::coloured::Coloured;
 use beadwright::report::sheet::Sheet;
 use beadwright::task::Task;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -265,6 +266,50 @@ fn the_range_of_the_colours_is_chosen_and_given_back() {
         assert_eq!(answer[same], answer["wide"], "{same}: {answer}");
     }
     assert!(answer["other"].is_null() && answer["left"].is_null() && answer["after"] == answer["before"], "{answer}");
+}
+
+#[test]
+fn the_range_of_heights_is_chosen_and_given_back() {
+    // From 0.5 mm too low to 0.5 mm too high: the left half at the lower end, the right half a quarter millimetre too high.
+    let values = vec![picture::FIRST_HEIGHT, picture::FIRST_HEIGHT + 190];
+    let picture = Picture { low: DVec2::ZERO, pixel: 1.0, width: 2, height: 1, values };
+    let mut sheet = Sheet::new("Heights", "");
+    sheet.heights(0.5, &["layer 1".to_owned()], &[("scan".to_owned(), vec![Some(&picture)])]);
+    let script = "<script>(async () => {
+        const rest = ms => new Promise(done => setTimeout(done, ms));
+        await rest(300);
+        const card = document.querySelector('.maps'), [low, high] = card.querySelectorAll('input');
+        const reset = card.querySelector('button'), canvas = card.querySelector('.grid canvas');
+        const seen = () => [low.value, high.value];
+        const paint = async () => { await rest(300);
+          return [0.25, 0.75].map(x => [...canvas.getContext('2d').getImageData(x * canvas.width, canvas.height / 2, 1, 1).data].slice(0, 3)); };
+        const type = (field, text) => { field.value = text; field.dispatchEvent(new Event('change')); };
+        const before = seen(), hidden = reset.hidden, whole = await paint();
+        type(high, '0.2');
+        const narrow = seen(), given = !reset.hidden, narrowed = await paint();
+        // Ends cannot change places, and a field cannot be empty.
+        type(low, '0.3');
+        const crossed = seen();
+        type(low, '');
+        const empty = seen();
+        reset.click();
+        return { before, hidden, whole, narrow, given, narrowed, crossed, empty, after: seen(), back: await paint(), gone: reset.hidden,
+          names: [low, high, reset].map(part => part.getAttribute('aria-label')) };
+      })()";
+    let Some(answer) = answer(&sheet.html(), script) else { return };
+    assert_eq!(answer["before"], serde_json::json!(["-0.50", "0.50"]), "{answer}");
+    assert_eq!(answer["narrow"], serde_json::json!(["-0.50", "0.20"]), "{answer}");
+    assert!(answer["hidden"] == true && answer["given"] == true && answer["gone"] == true, "{answer}");
+    // What is too high has the last colour of the scale, what is too low the first, as before.
+    let last = palette::HEIGHTS[palette::HEIGHTS.len() - 1].1;
+    assert_eq!(answer["narrowed"], serde_json::json!([palette::HEIGHTS[0].1, last]), "{answer}");
+    assert_ne!(answer["whole"][1], answer["narrowed"][1], "{answer}");
+    for same in ["crossed", "empty"] {
+        assert_eq!(answer[same], answer["narrow"], "{same}: {answer}");
+    }
+    assert!(answer["after"] == answer["before"] && answer["back"] == answer["whole"], "{answer}");
+    let names = ["Lowest value of the colours", "Highest value of the colours", "The whole range"];
+    assert_eq!(answer["names"], serde_json::json!(names));
 }
 
 /// A report with what the deposit model says about each layer.

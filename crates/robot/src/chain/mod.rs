@@ -10,7 +10,7 @@ mod inverse;
 mod polish;
 mod turn;
 
-use crate::arm::{Branch, Frame, Joints, Model, from_zero};
+use crate::arm::{Axis, Branch, Frame, Joints, Model, from_zero};
 use glam::{DQuat, DVec3};
 use turn::{across, turned};
 
@@ -32,6 +32,7 @@ pub struct ChainError(&'static str);
 /// A chain of six revolute joints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
+    /// The axes of the joints with all joints at 0°, in the frame of the foot.
     axes: [Axis; 6],
     /// The flange with all joints at 0°.
     flange: Frame,
@@ -41,13 +42,6 @@ pub struct Chain {
     /// Unit vectors along axis 2, such that the arm leans forward by turning about it, and up along axis 1.
     side: DVec3,
     up: DVec3,
-}
-
-/// The axis of a joint with all joints at 0°, in the frame of the foot.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Axis {
-    at: DVec3,
-    along: DVec3,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -167,6 +161,14 @@ impl Model for Chain {
         let wrist = if self.wrist == Wrist::Spherical { self.centre } else { self.axes[4].at };
         let place = |count: usize, at: DVec3| self.moved(&joints, count).apply(at);
         [DVec3::ZERO, place(1, self.axes[1].at), place(2, self.axes[2].at), place(4, wrist)]
+    }
+
+    fn axes(&self, joints: &Joints) -> [Axis; 6] {
+        let joints = joints.map(f64::to_radians);
+        std::array::from_fn(|joint| {
+            let (moved, Axis { at, along }) = (self.moved(&joints, joint), self.axes[joint]);
+            Axis { at: moved.apply(at), along: moved.rotation * along }
+        })
     }
 
     fn branch(&self, joints: &Joints) -> Branch {

@@ -24,8 +24,10 @@ struct Globals {
     section: vec4<f32>,
     // Straight up in the cell.
     sky: vec4<f32>,
+    // The floor: the directions of its lines, out of it, its middle, mm; behind the first, how far it goes.
+    floor: mat4x4<f32>,
     // Colours of all that is no bead.
-    roles: array<vec4<f32>, 11>,
+    roles: array<vec4<f32>, 14>,
 }
 
 @group(0) @binding(0) var<uniform> globals: Globals;

@@ -65,7 +65,7 @@ impl Shot<'_> {
             let travels = chunk.travels.from(0).filter(|_| style.travels);
             draw_points(pass, &pipelines.line, travels, range.travels.clone(), 0..1);
         }
-        pass.set_pipeline(&pipelines.ground);
+        pass.set_pipeline(if style.floor.is_some() { &pipelines.floor } else { &pipelines.ground });
         pass.draw(0..4, 0..1);
         if let Some(surface) = surface {
             // Glass would tint the colours of a scan or a movement.

@@ -4,6 +4,7 @@ use super::Quality;
 use crate::view3d::camera::Camera;
 use crate::view3d::palette;
 use crate::view3d::scene::Scene;
+use crate::view3d::shape::Floor;
 use crate::view3d::style::{Colour, Style};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3};
@@ -17,7 +18,9 @@ pub(super) mod role {
     pub(in crate::view3d) const TORCH: u32 = 4;
     pub(in crate::view3d) const NOZZLE: u32 = 5;
     pub(in crate::view3d) const PLATE: u32 = 8;
-    pub(in crate::view3d) const ARM: u32 = 9;
+    pub(in crate::view3d) const LINK: u32 = 9;
+    pub(in crate::view3d) const JOINT: u32 = 11;
+    pub(in crate::view3d) const TABLE: u32 = 12;
 }
 
 /// See `common.wgsl`.
@@ -36,11 +39,12 @@ pub(super) struct Globals {
     pub accent: [f32; 4],
     section: [f32; 4],
     sky: [f32; 4],
+    floor: [[f32; 4]; 4],
     roles: [[f32; 4]; ROLES],
 }
 
-/// Number of roles; the last one is the inside of a cut model.
-const ROLES: usize = 11;
+/// Number of roles; 6 is the model, 7 the grid, 10 the inside of a cut model, 13 the floor.
+const ROLES: usize = 14;
 
 /// How much rounder beads are shaded than they are: 0 as they are, 1 as circles.
 const ROUNDNESS: f64 = 0.6;
@@ -72,6 +76,7 @@ impl Globals {
             accent: [0.0; 4],
             section: section(style),
             sky: camera.sky().extend(0.0).as_vec4().into(),
+            floor: style.floor.as_ref().map_or([[0.0; 4]; 4], floor),
             roles: roles(style.dark),
         }
     }
@@ -95,6 +100,12 @@ fn ground(scene: &Scene, every: usize) -> [f32; 4] {
     [middle.x as f32, middle.y as f32, half as f32, every as f32]
 }
 
+/// The floor's x, y and z and its middle, mm; behind x how far it goes.
+fn floor(Floor { frame, half }: &Floor) -> [[f32; 4]; 4] {
+    let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| frame.rotation * axis);
+    [(x, *half), (y, 0.0), (z, 0.0), (frame.position, 1.0)].map(|(v, w)| v.extend(w).as_vec4().into())
+}
+
 /// Normal and offset of the section, mm: what lies beyond is cut away, and without a section nothing is.
 fn section(style: &Style) -> [f32; 4] {
     let plane = style.section.map(|section| section.plane());
@@ -113,8 +124,11 @@ fn roles(dark: bool) -> [[f32; 4]; ROLES] {
         rgba(by_theme([160, 176, 198], [172, 188, 210]), 1.0),
         rgba(by_theme([150, 158, 170], [96, 104, 118]), if dark { 0.34 } else { 0.42 }),
         rgba(by_theme([74, 80, 90], [206, 211, 219]), 1.0),
-        rgba([232, 128, 52], 1.0),
+        rgba(by_theme([190, 194, 200], [214, 217, 222]), 1.0),
         rgba(by_theme([104, 122, 148], [126, 146, 178]), 1.0),
+        rgba(by_theme([98, 104, 114], [120, 127, 138]), 1.0),
+        rgba(by_theme([132, 138, 148], [176, 182, 190]), 1.0),
+        rgba(by_theme([52, 56, 63], [222, 226, 232]), 0.8),
     ]
 }
 

@@ -113,3 +113,25 @@ fn ground_colour(in: GroundVertex) -> @location(0) vec4<f32> {
     let alpha = max(lines * base.a, max(axes.x, axes.y) * 0.6) * fade;
     return vec4(colour * alpha, alpha);
 }
+
+@vertex
+fn floor(@builtin(vertex_index) vertex: u32) -> GroundVertex {
+    let place = vec2(f32(vertex & 1u), f32(vertex >> 1u)) * 2.0 - 1.0;
+    let frame = globals.floor;
+    var out: GroundVertex;
+    out.at = place * frame[0].w;
+    let world = frame[3].xyz + frame[0].xyz * out.at.x + frame[1].xyz * out.at.y;
+    out.clip = globals.clip_from_world * vec4(world, 1.0);
+    return out;
+}
+
+@fragment
+fn floor_colour(in: GroundVertex) -> @location(0) vec4<f32> {
+    let pixel = max(fwidth(in.at), vec2(1e-6));
+    let fade = 1.0 - smoothstep(0.5, 1.0, length(in.at) / globals.floor[0].w);
+    let lines = max(0.4 * grid(in.at, 100.0, pixel), grid(in.at, 1000.0, pixel)) * globals.roles[7].a;
+    let base = globals.roles[13];
+    let colour = mix(base.rgb, globals.roles[7].rgb, lines);
+    let alpha = base.a * fade;
+    return vec4(colour * alpha, alpha);
+}

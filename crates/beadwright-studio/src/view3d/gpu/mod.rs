@@ -7,7 +7,7 @@
 //! | `draw` | the order in which things are drawn |
 //! | `surface` | the model |
 //! | `scan` | a scan of the built part, the bodies of the part, the bent plate |
-//! | `solids` | plate, torch and arm |
+//! | `solids` | plate, torch, robot, positioner and table |
 //! | `growing` | a buffer that can grow |
 //! | `globals` | the data passed to all shaders |
 //! | `pipelines` | how each kind of thing is drawn |
@@ -36,7 +36,7 @@ use globals::Globals;
 use growing::Growing;
 use pipelines::Pipelines;
 use scan::{Mapped, Scan};
-pub(super) use solids::BELOW;
+pub(crate) use solids::BELOW;
 use surface::Surface;
 pub(super) use target::Target;
 use wgpu::util::DeviceExt as _;
@@ -126,7 +126,7 @@ impl Gpu {
             scan,
             pieces,
             bent_plate: None,
-            solids: Growing::new("plate, torch and arm"),
+            solids: Growing::new("plate, torch, machine"),
         }
     }
 

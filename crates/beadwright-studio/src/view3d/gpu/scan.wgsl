@@ -3,7 +3,7 @@
 struct ScanVertex {
     @builtin(position) clip: vec4<f32>,
     @location(0) at: vec3<f32>,
-    // Place in the colour map.
+    // Place in the colour map; below 0 for what has no colour of its own.
     @location(1) part: f32,
 }
 
@@ -25,7 +25,8 @@ fn scan_point(@builtin(vertex_index) vertex: u32, @location(0) point: vec4<f32>)
 }
 
 fn scan_ink(in: ScanVertex) -> vec4<f32> {
-    let colour = textureLoad(colour_map, vec2(i32(clamp(in.part, 0.0, 1.0) * 255.0 + 0.5), 0), 0).rgb;
+    let mapped = textureLoad(colour_map, vec2(i32(clamp(in.part, 0.0, 1.0) * 255.0 + 0.5), 0), 0).rgb;
+    let colour = select(mapped, globals.missing.rgb, in.part < -0.5);
     return vec4(shaded(colour, facing(in.at)), 1.0);
 }
 

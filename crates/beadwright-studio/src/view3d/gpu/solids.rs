@@ -1,40 +1,31 @@
-//! What is around the part, as triangles: the plate below it, the torch, the arm.
+//! What is around the part, as triangles: the plate below it, the torch, robot, positioner and table.
 
 use super::chunks::Point;
 use super::globals::role;
 use crate::view3d::lie::Stance;
+use crate::view3d::shape::{Look, Shape};
 use crate::view3d::style::{Plate, Style};
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 /// Number of sides of round bodies.
-const SIDES: usize = 36;
-
-/// Number of steps from the side of a round end to its tip.
-const ROUND: usize = 8;
+const SIDES: usize = 64;
 
 /// The top of the plate lies this far below the part, mm, so that the grid is seen on it.
-pub(in crate::view3d) const BELOW: f32 = 0.05;
+pub(crate) const BELOW: f32 = 0.05;
 
 /// Everything that a style shows around the part.
 pub(super) fn solids(style: &Style) -> Vec<Point> {
     let mut points = Vec::new();
     style.plate.iter().for_each(|place| plate(&mut points, place));
     style.torch.iter().for_each(|stance| torch(&mut points, stance));
-    for link in &style.arm {
-        capsule(&mut points, link.ends, link.radius);
-    }
+    style.around.iter().for_each(|body| shape(&mut points, body));
     points
 }
 
 /// The plate: a box below z = 0.
 fn plate(points: &mut Vec<Point>, Plate { low, high, thickness }: &Plate) {
     let (low, high) = (low.as_vec2().extend(-*thickness as f32 - BELOW), high.as_vec2().extend(-BELOW));
-    let corner =
-        |i: usize| Vec3::from_array([0, 1, 2].map(|axis| if i >> axis & 1 == 0 { low[axis] } else { high[axis] }));
-    for [a, b, c, d] in [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]] {
-        let side = [a, b, c, a, c, d].map(corner);
-        points.extend(side.map(|at| Point { at: at.into(), role: role::PLATE }));
-    }
+    block(points, role::PLATE, |axes| low + (high - low) * Vec3::from(axes));
 }
 
 /// A torch with its tip at a given place.
@@ -51,15 +42,32 @@ fn torch(points: &mut Vec<Point>, stance: &Stance) {
     revolved(points, stance.at.as_vec3(), stance.up.as_vec3(), &PROFILE);
 }
 
-/// A line with a thickness and round ends.
-fn capsule(points: &mut Vec<Point>, ends: [DVec3; 2], radius: f64) {
-    let [from, to] = ends.map(|end| end.as_vec3());
-    let (length, radius) = (from.distance(to), radius as f32);
-    let axis = (to - from).try_normalize().unwrap_or(Vec3::Z);
-    let end = |k: usize| (k as f32 / ROUND as f32 * std::f32::consts::FRAC_PI_2).sin_cos();
-    let first = (0..=ROUND).map(end).map(|(sin, cos)| (-radius * cos, radius * sin, role::ARM));
-    let last = (0..=ROUND).rev().map(end).map(|(sin, cos)| (length + radius * cos, radius * sin, role::ARM));
-    revolved(points, from, axis, &first.chain(last).collect::<Vec<_>>());
+/// What stands around the part.
+fn shape(points: &mut Vec<Point>, shape: &Shape) {
+    let role = |look: &Look| match look {
+        Look::Link => role::LINK,
+        Look::Joint => role::JOINT,
+        Look::Torch => role::TORCH,
+        Look::Table => role::TABLE,
+    };
+    match shape {
+        Shape::Turned { from, axis, rings, look } => {
+            let ring = |[along, radius]: &[f64; 2]| (*along as f32, *radius as f32, role(look));
+            revolved(points, from.as_vec3(), axis.as_vec3(), &rings.iter().map(ring).collect::<Vec<_>>());
+        }
+        Shape::Block { corner, edges, look } => {
+            let (corner, edges) = (corner.as_vec3(), edges.map(|edge| edge.as_vec3()));
+            block(points, role(look), |axes| corner + (0..3).map(|k| edges[k] * axes[k]).sum::<Vec3>());
+        }
+    }
+}
+
+/// The six sides of a box; `corner` has its corners by shares of its edges, 0 or 1.
+fn block(points: &mut Vec<Point>, role: u32, corner: impl Fn([f32; 3]) -> Vec3) {
+    let corner = |i: usize| corner([0, 1, 2].map(|axis| (i >> axis & 1) as f32));
+    for [a, b, c, d] in [[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]] {
+        points.extend([a, b, c, a, c, d].map(corner).map(|at| Point { at: at.into(), role }));
+    }
 }
 
 /// A body of revolution about an axis of length 1; `profile` gives distances along the axis and from it, mm, and the

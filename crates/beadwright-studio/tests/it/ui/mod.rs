@@ -1,7 +1,9 @@
 //! The window, headless, by the widgets a person uses.
 
+mod adapt;
 mod background;
 mod basic;
+mod batch;
 mod compare;
 mod directions;
 mod distortion;
@@ -22,6 +24,7 @@ mod play;
 mod preform;
 mod program;
 mod range;
+mod robots;
 mod scan;
 mod space;
 mod start;

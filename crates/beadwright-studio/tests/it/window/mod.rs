@@ -133,6 +133,11 @@ pub(crate) fn sees(harness: &Window, label: &str) -> bool {
     harness.query_all_by_label(label).next().is_some()
 }
 
+/// Whether a text that has this in it is to be seen.
+pub(crate) fn says(harness: &Window, part: &str) -> bool {
+    harness.query_all_by_label_contains(part).next().is_some()
+}
+
 /// Clicks at a place of the window.
 pub(crate) fn click_at(harness: &mut Window, pos: Pos2) {
     harness.hover_at(pos);
