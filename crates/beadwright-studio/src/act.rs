@@ -311,6 +311,7 @@ impl Studio {
         // Before this file was opened there was another project, which must not be saved into this file.
         if self.open.project.steps() < self.open.opened {
             self.open.file = None;
+            (self.view.adapt, self.jobs.adapting) = (None, None);
         }
         self.open.refused = None;
         if gone {

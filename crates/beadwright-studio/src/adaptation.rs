@@ -41,6 +41,16 @@ impl Adaptation {
         Self { scan, after_layer, align: Align::AsIs, window: WINDOW }
     }
 
+    /// What is wrong with settings read from a file, as a sentence.
+    pub(crate) fn fault(&self) -> Option<String> {
+        let [least, most] = self.window;
+        if self.after_layer == 0 {
+            return Some("adapted.after_layer is counted from 1".to_owned());
+        }
+        let is_sound = (0.1..=1.0).contains(&least) && (1.0..=5.0).contains(&most);
+        (!is_sound).then(|| "adapted.window is least and most, as [0.7, 1.3]: 0.1 to 1, and 1 to 5".to_owned())
+    }
+
     /// The name of the scan's file.
     pub fn name(&self) -> String {
         self.scan.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())

@@ -33,9 +33,14 @@ impl Studio {
         self.open.project.seal();
     }
 
-    /// Puts the scan away.
+    /// Puts the scan away; layers that follow it give way to those planned, as one step.
     pub(crate) fn close_build_scan(&mut self) {
         (self.view.adapt, self.jobs.adapting) = (None, None);
+        if self.project().adapted.is_some() {
+            self.open.project.seal();
+            self.change(ADAPTED, |project| project.adapted = None);
+            self.open.project.seal();
+        }
     }
 
     /// Takes what was compared; compares what is chosen, and shows the layers that follow where they are taken over.
@@ -52,7 +57,10 @@ impl Studio {
             Some(adapting) if adapting.settings == wanted => {
                 let takes = self.open.project.now().adapted.is_some();
                 match &adapting.run.result {
-                    Some(Ok(follows)) if takes => self.plans.own.follow(follows),
+                    Some(Ok(follows)) if takes => {
+                        self.plans.own.follow(follows);
+                        (self.view.chosen, self.view.pin) = (None, None);
+                    }
                     Some(Err(error)) if takes && !adapting.reported => {
                         adapting.reported = true;
                         let error = error.clone();
@@ -62,6 +70,8 @@ impl Studio {
                     _ => {}
                 }
             }
+            // A value that is being dragged is not final.
+            _ if self.window.ctx.input(|input| input.pointer.any_down()) => {}
             _ => self.begin_adapting(wanted),
         }
     }

@@ -4,7 +4,7 @@ use crate::computing::Computing;
 use crate::planner;
 use crate::project::{Project, Source};
 use crate::state::PlanState;
-use beadwright::finding::Severity;
+use beadwright::finding::{Finding, Severity};
 use beadwright::task::Task;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -36,8 +36,8 @@ pub struct Figures {
     pub starts: usize,
     /// What is worst.
     pub verdict: Verdict,
-    /// The worst finding as a sentence; none where nothing was found.
-    pub worst: Option<String>,
+    /// The worst finding; none where nothing was found.
+    pub worst: Option<Finding>,
 }
 
 /// How far a model has come.
@@ -136,7 +136,9 @@ fn set(rows: &Mutex<Vec<Row>>, number: usize, come: Come) {
 pub(crate) fn models(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let unread = |error: std::io::Error| format!("{}: {error}.", folder.display());
     let is_model = |path: &PathBuf| {
-        let end = path.extension().map(|end| end.to_string_lossy().to_lowercase());
+        let packed = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("gz"));
+        let name = if packed { path.with_extension("") } else { path.clone() };
+        let end = name.extension().map(|end| end.to_string_lossy().to_lowercase());
         end.is_some_and(|end| MODELS.contains(&&*end)) && path.is_file()
     };
     let entries = std::fs::read_dir(folder).map_err(unread)?;
@@ -162,6 +164,7 @@ fn planned(project: &Project, task: &Task) -> Result<Figures, String> {
         return Err(failure.sentence().to_owned());
     }
     let summary = plan.summary.as_ref().ok_or("it was not planned.")?;
+    let refused = |text: &String| Finding::new("refused", Severity::Serious, text.clone());
     let worst = plan.reported.first().filter(|finding| finding.severity < Severity::Note);
     let verdict = match worst {
         _ if !summary.forbidden.is_empty() => Verdict::Forbidden,
@@ -174,6 +177,6 @@ fn planned(project: &Project, task: &Task) -> Result<Figures, String> {
         seconds: summary.metrics.total_time_s,
         starts: summary.metrics.arc_starts,
         verdict,
-        worst: summary.forbidden.first().cloned().or(worst.map(|finding| finding.text.clone())),
+        worst: summary.forbidden.first().map(refused).or(worst.cloned()),
     })
 }

@@ -134,6 +134,9 @@ impl Project {
             return Err(ProjectError::Version(file.version));
         }
         Profile::parse(&file.profile)?;
+        if let Some(fault) = file.adapted.as_ref().and_then(Adaptation::fault) {
+            return Err(ProjectError::Text(fault));
+        }
         let absolute = |path: PathBuf| folder.map_or(path.clone(), |folder| folder.join(&path));
         let source = match (file.model, file.example) {
             (Some(_), Some(_)) => return Err(ProjectError::Model("both a model and an example.".to_owned())),

@@ -65,6 +65,9 @@ enum Received {
     Layers,
 }
 
+/// The check that compares the end of the part with its plan.
+const ENDS: &str = "built-height";
+
 impl PlanState {
     /// A new request has started; the old plan stays in view until the new one replaces it. It may await layers that follow a scan.
     pub fn restart(&mut self, awaits: bool) {
@@ -87,10 +90,18 @@ impl PlanState {
             self.scene.set_layer(self.layers.len(), beads.clone());
             self.layers.push(layer.clone());
         }
-        (self.header, self.summary) = (Some(follows.header.clone()), Some(follows.summary.clone()));
+        let mut summary = follows.summary.clone();
+        if let Some(planned) = self.summary.take() {
+            // What could not be welded as planned cannot be welded on the metal that was measured either.
+            let more = planned.forbidden.into_iter().filter(|text| !summary.forbidden.contains(text));
+            summary.forbidden.extend(more.collect::<Vec<_>>());
+            (summary.warnings, summary.blocked) = (planned.warnings, planned.blocked);
+        }
+        (self.header, self.summary) = (Some(follows.header.clone()), Some(summary));
         self.total = None;
         if let Some(findings) = &mut self.findings {
-            findings.retain(|finding| finding.layer.is_some_and(|layer| layer < number));
+            // How the layers that follow end is not known.
+            findings.retain(|finding| finding.layer.map_or(finding.kind != ENDS, |layer| layer < number));
         }
         self.adapted = Some(follows.adapted.clone());
         self.report();

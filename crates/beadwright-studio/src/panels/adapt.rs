@@ -19,7 +19,8 @@ const ALIGNS: [(Align, &str); 3] =
 
 /// The entry of the menu that chooses a scan.
 pub(super) fn entry(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
-    let reason = known.unadaptable();
+    // Another scan cannot take the place of one that the layers follow.
+    let reason = known.unadaptable().or(known.project().adapted.as_ref().map(|_| "adapt-taken"));
     let button =
         ui.add_enabled(reason.is_none(), Button::new(known.t("adapt-open"))).on_hover_text(known.t("adapt-hint"));
     if button.on_disabled_hover_text(known.t(reason.unwrap_or("adapt-hint"))).clicked() {
@@ -37,7 +38,7 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
     let Some(settings) = known.adaptation(view.state).cloned() else { return };
     let mut chosen = settings.clone();
     ui.add_enabled_ui(!taken, |ui| inputs(known, ui, &mut chosen));
-    if chosen != settings {
+    if chosen != settings && !taken && known.plans.own.is_complete() {
         view.state.adapt = Some(chosen);
         return;
     }
@@ -50,19 +51,23 @@ pub(super) fn show(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui:
                 ui.weak(known.t("adapt-runs"));
             });
         }
-        Some(Some(Err(sentence))) => drop(ui.colored_label(ui.visuals().error_fg_color, sentence)),
+        Some(Some(Err(sentence))) => {
+            ui.colored_label(ui.visuals().error_fg_color, sentence);
+            away(known, queue, ui);
+        }
         Some(Some(Ok(follows))) => found(known, queue, ui, follows, taken),
     }
 }
 
 /// What can be chosen: the layer, how the scan is aligned, how much metal may be asked for.
-fn inputs(known: Known<'_>, ui: &mut Ui, Adaptation { scan, after_layer, align, window }: &mut Adaptation) {
-    let name = scan.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    ui.strong(name).on_hover_text(scan.display().to_string());
-    let planned = known.plans.own.layers.len().max(1);
+fn inputs(known: Known<'_>, ui: &mut Ui, settings: &mut Adaptation) {
+    ui.strong(settings.name()).on_hover_text(settings.scan.display().to_string());
+    let Adaptation { after_layer, align, window, .. } = settings;
+    let planned = known.plans.own.header.as_ref().map_or(1, |header| header.extent.layers.max(1));
     ui.horizontal(|ui| {
         ui.label(known.t("adapt-after"));
-        let field = DragValue::new(after_layer).range(1..=planned).update_while_editing(false);
+        let field = DragValue::new(after_layer).range(1..=planned).clamp_existing_to_range(false);
+        let field = field.update_while_editing(false);
         let field = ui.add(field);
         field.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, known.t("adapt-after")));
     });
@@ -100,10 +105,8 @@ fn found(known: Known<'_>, queue: &mut Queue, ui: &mut Ui, follows: &Follows, ta
         if ui.add_enabled(any, Button::new(known.t("adapt-use"))).on_hover_text(known.t("adapt-use-hint")).clicked() {
             queue.push(Action::Adapt);
         }
-        if ui.button(known.t("scan-away")).clicked() {
-            queue.push(Action::CloseBuildScan);
-        }
     }
+    away(known, queue, ui);
     ui.separator();
     let reliefs = &follows.reliefs;
     ui.horizontal(|ui| {
@@ -118,6 +121,13 @@ fn found(known: Known<'_>, queue: &mut Queue, ui: &mut Ui, follows: &Follows, ta
     ];
     for (key, picture) in pictures {
         relief(ui, known.t(key), picture, &follows.adapted);
+    }
+}
+
+/// The button that puts the scan away, and brings the plan back where its layers follow the scan.
+fn away(known: Known<'_>, queue: &mut Queue, ui: &mut Ui) {
+    if ui.button(known.t("scan-away")).clicked() {
+        queue.push(Action::CloseBuildScan);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The table of several models: how far each has come, its figures, and the worst that was found.
 
+use super::findings;
 use crate::actions::Action;
 use crate::batch::{Come, Figures, Row, Verdict};
 use crate::jobs::Ask;
@@ -88,7 +89,7 @@ fn planned(known: Known<'_>, ui: &mut Ui, figures: &Figures) {
     ui.label(format!("{mass:.2} kg"));
     ui.label(format!("{:.2} h", seconds / 3600.0));
     ui.label(starts.to_string());
-    worst(ui, found.as_deref().unwrap_or("–"));
+    worst(ui, &found.as_ref().map_or_else(|| "–".to_owned(), |finding| findings::said(known, finding)));
 }
 
 /// The beginning of a sentence; all of it as a hint.

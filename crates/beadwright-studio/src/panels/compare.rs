@@ -65,7 +65,14 @@ fn in_solid(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, left: &mut
     let [own, theirs] = ["view-3d-label", "view-3d-other"].map(|key| known.t(key));
     // A bead of one plan does not exist in the other.
     let style = known.style(view.state);
-    let plain = Style { segments_of_last: None, highlight: None, torch: None, around: Vec::new(), ..style.clone() };
+    let plain = Style {
+        segments_of_last: None,
+        highlight: None,
+        torch: None,
+        around: Vec::new(),
+        floor: None,
+        ..style.clone()
+    };
     solid::picture(known, view, queue, left, &style, own);
     let (camera, state) = (view.solid.camera, known.window.render_state.as_ref());
     let Some(other) = &known.plans.other else { return };

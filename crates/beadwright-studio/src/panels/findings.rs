@@ -66,7 +66,7 @@ fn name(known: Known<'_>, kind: &'static str) -> &'static str {
 }
 
 /// What a finding says in the language of the window; in English where the table of the other lacks it.
-fn said(known: Known<'_>, finding: &Finding) -> String {
+pub(super) fn said(known: Known<'_>, finding: &Finding) -> String {
     let chinese = in_chinese(known, finding.kind).and_then(|chinese| chinese.say(&finding.text));
     chinese.unwrap_or_else(|| sentence(&finding.text))
 }

@@ -59,6 +59,15 @@ fn projects_that_cannot_be_are_refused() {
     assert!(matches!(read(&format!("example = \"nix\"\n{good}")), Err(ProjectError::Model(_))));
     assert!(matches!(read(&format!("example = \"cross\"\nmodel = \"a\"\n{good}")), Err(ProjectError::Model(_))));
     assert!(matches!(read(&good.replace("raster_turn", "raster_torn")), Err(ProjectError::Profile(_))));
+    let adapted = |after: usize, window: &str| {
+        format!("{good}\n[adapted]\nscan = \"a.ply\"\nafter_layer = {after}\nwindow = {window}\n")
+    };
+    assert!(read(&adapted(3, "[0.7, 1.3]")).is_ok());
+    for (after, window) in
+        [(0, "[0.7, 1.3]"), (3, "[1.3, 0.7]"), (3, "[0.0, 1.3]"), (3, "[nan, 1.3]"), (3, "[0.7, inf]")]
+    {
+        assert!(matches!(read(&adapted(after, window)), Err(ProjectError::Text(_))), "{after} {window}");
+    }
 }
 
 #[test]

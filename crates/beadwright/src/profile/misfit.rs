@@ -65,7 +65,8 @@ impl Profile {
         let mut misfits = Vec::new();
         // What a dialect of one's own is for is not known.
         let all_known = self.posts.iter().all(|post| dialect::find(post).is_some());
-        if let Some(reads) = cell.dialect.as_ref().filter(|_| all_known && !self.posts.is_empty())
+        let is_known = |reads: &&String| all_known && dialect::find(reads).is_some();
+        if let Some(reads) = cell.dialect.as_ref().filter(is_known).filter(|_| !self.posts.is_empty())
             && !self.posts.contains(reads)
         {
             misfits.push(Misfit::Dialect { reads: reads.clone(), written: self.posts.join(", ") });

@@ -95,7 +95,7 @@ fn what_is_left_follows_a_scan_in_one_step_that_can_be_undone() {
     let metrics = &plan.summary.as_ref().unwrap().metrics;
     assert_eq!(metrics.layers, followed.len());
     assert!(metrics.deposited_volume_mm3 > 0.0 && plan.is_of_last_request());
-    assert!(sees(&harness, "The layers above follow this scan. Undo brings the plan back."));
+    assert!(sees(&harness, "The layers above follow a scan. Close the scan, and the plan comes back."));
     assert!(
         harness.get_by_role_and_label(eframe::egui::Role::SpinButton, "Least metal").accesskit_node().is_disabled()
     );
@@ -104,6 +104,15 @@ fn what_is_left_follows_a_scan_in_one_step_that_can_be_undone() {
     assert!(says(&harness, "Undo: layers after a scan"));
     press(&mut harness, Key::Escape);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    wait(&mut harness);
+    assert_eq!(*harness.state().project(), before);
+    assert_eq!(layers(&harness), planned);
+    assert_eq!(harness.state_mut().view().adapt.as_ref().unwrap().after_layer, AFTER, "kept while it is planned again");
+    // Closing the scan brings the plan back, too.
+    harness.state_mut().act(Action::Adapt);
+    wait(&mut harness);
+    assert_eq!(layers(&harness), followed);
+    click(&mut harness, "Close the scan");
     wait(&mut harness);
     assert_eq!(*harness.state().project(), before);
     assert_eq!(layers(&harness), planned);
