@@ -70,7 +70,7 @@ enum How {
 fn parse_window(text: &str) -> Result<(f64, f64), String> {
     let ends = text.split_once("..").and_then(|(least, most)| Some((least.parse().ok()?, most.parse().ok()?)));
     match ends {
-        Some((least, most)) if (0.1..=1.0).contains(&least) && (1.0..=5.0).contains(&most) => Ok((least, most)),
+        Some((least, most)) if Rules::allow([least, most]) => Ok((least, most)),
         _ => Err("two numbers are expected, 0.1 to 1 and 1 to 5, such as 0.7..1.3".to_owned()),
     }
 }

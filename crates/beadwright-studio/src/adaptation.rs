@@ -17,9 +17,6 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Metal per length that may be asked for, as multiples of what was planned: as in the command.
-const WINDOW: [f64; 2] = [0.7, 1.3];
-
 /// A scan, and how the layers after it are corrected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,17 +35,16 @@ pub struct Adaptation {
 impl Adaptation {
     /// A scan taken after a layer, from 1, with the usual limits.
     pub fn of(scan: PathBuf, after_layer: usize) -> Self {
-        Self { scan, after_layer, align: Align::AsIs, window: WINDOW }
+        Self { scan, after_layer, align: Align::AsIs, window: Rules::WINDOW }
     }
 
     /// What is wrong with settings read from a file, as a sentence.
     pub(crate) fn fault(&self) -> Option<String> {
-        let [least, most] = self.window;
         if self.after_layer == 0 {
             return Some("adapted.after_layer is counted from 1".to_owned());
         }
-        let is_sound = (0.1..=1.0).contains(&least) && (1.0..=5.0).contains(&most);
-        (!is_sound).then(|| "adapted.window is least and most, as [0.7, 1.3]: 0.1 to 1, and 1 to 5".to_owned())
+        (!Rules::allow(self.window))
+            .then(|| "adapted.window is least and most, as [0.7, 1.3]: 0.1 to 1, and 1 to 5".to_owned())
     }
 
     /// The name of the scan's file.

@@ -140,6 +140,11 @@ impl PlanState {
         self.received == Received::Layers && (!self.awaits || self.adapted.is_some())
     }
 
+    /// Whether the last request is planned, though perhaps not yet judged.
+    pub fn is_planned(&self) -> bool {
+        self.summary.is_some() && self.is_of_last_request()
+    }
+
     /// Whether the part in view is that of the last request.
     pub fn is_placed(&self) -> bool {
         self.received != Received::Nothing

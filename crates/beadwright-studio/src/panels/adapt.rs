@@ -7,7 +7,7 @@ use crate::jobs::Ask;
 use crate::known::{Known, Queue, View};
 use crate::view2d;
 use crate::view3d::{Colour, palette};
-use beadwright::adapt::{Adapted, Align};
+use beadwright::adapt::{Adapted, Align, Rules};
 use beadwright::deposit::Picture;
 use eframe::egui::{Button, ComboBox, DragValue, Id, Image, Role, TextureHandle, TextureOptions, Ui, WidgetInfo, vec2};
 use std::ops::RangeInclusive;
@@ -88,8 +88,9 @@ fn inputs(known: Known<'_>, ui: &mut Ui, settings: &mut Adaptation) {
             ui.add(field).widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, known.t(key)));
         };
         let [least, most] = window;
-        end(ui, least, "adapt-least", 0.1..=1.0);
-        end(ui, most, "adapt-most", 1.0..=5.0);
+        let [lowest, highest] = Rules::LIMITS;
+        end(ui, least, "adapt-least", lowest);
+        end(ui, most, "adapt-most", highest);
     });
 }
 

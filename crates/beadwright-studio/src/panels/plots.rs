@@ -105,8 +105,7 @@ fn curve(
 fn joints(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
     ui.horizontal(|ui| process::cell(known, view, queue, ui));
     robot::misfits(known, ui);
-    let own = &known.plans.own;
-    let ready = own.summary.is_some() && own.is_of_last_request() && known.jobs.reach_job.is_none();
+    let ready = known.plans.own.is_planned() && known.jobs.reach_job.is_none();
     if ui.add_enabled(ready, eframe::egui::Button::new(known.t("reach-run"))).clicked() {
         queue.push(Action::Reach);
     }

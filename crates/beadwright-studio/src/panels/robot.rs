@@ -10,7 +10,7 @@ use eframe::egui::{Label, RichText, TextWrapMode, Ui};
 /// The switch that shows the arm; the poses that it needs are computed in the background.
 pub(super) fn switch(known: Known<'_>, view: &mut View<'_>, queue: &mut Queue, ui: &mut Ui) {
     let (robot, waits) = (known.t("show-robot"), known.t("show-robot-waits"));
-    let ready = known.plans.own.summary.is_some() && known.plans.own.is_of_last_request();
+    let ready = known.plans.own.is_planned();
     let shown = ui.add_enabled_ui(ready, |ui| ui.checkbox(&mut view.state.robot, robot)).inner;
     if shown.on_disabled_hover_text(waits).changed() {
         view.solid.fit();

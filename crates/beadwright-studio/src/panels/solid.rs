@@ -132,8 +132,7 @@ fn lean(known: Known<'_>, view: &View<'_>, queue: &mut Queue, ui: &mut Ui) {
         return;
     }
     let has = || known.plans.own.scene.value_range(Colour::OffLevel).is_some();
-    let ready = known.plans.own.summary.is_some() && known.plans.own.is_of_last_request();
-    if view.state.colour == Colour::OffLevel && ready && !has() {
+    if view.state.colour == Colour::OffLevel && known.plans.own.is_planned() && !has() {
         queue.push(Action::Level);
     }
 }

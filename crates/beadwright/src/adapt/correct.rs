@@ -27,6 +27,18 @@ pub struct Rules {
     pub spacing: f64,
 }
 
+impl Rules {
+    /// What may be chosen as the least metal of a window, and as the greatest.
+    pub const LIMITS: [std::ops::RangeInclusive<f64>; 2] = [0.1..=1.0, 1.0..=5.0];
+    /// The usual window.
+    pub const WINDOW: [f64; 2] = [0.7, 1.3];
+
+    /// Whether a window may be chosen.
+    pub fn allow(window: [f64; 2]) -> bool {
+        Self::LIMITS.iter().zip(window).all(|(limits, end)| limits.contains(&end))
+    }
+}
+
 /// The next layer.
 #[derive(Debug, Clone)]
 pub(crate) struct Next {

@@ -333,7 +333,7 @@ impl Under {
 
     /// The height of a bead's edge at which the metal between its top and the ground is `metal` (mm summed over grid
     /// points), sought from that of the piece `before` it.
-    fn edge_height(&mut self, bead: &Bead, metal: f32, before: Option<f32>) -> Option<f32> {
+    fn edge_height(&self, bead: &Bead, metal: f32, before: Option<f32>) -> Option<f32> {
         let highest = self.ground.iter().copied().fold(f32::NEG_INFINITY, f32::max);
         let lowest = self.ground.iter().copied().fold(f32::INFINITY, f32::min);
         let (height, sag) = (bead.height as f32, (bead.area() / bead.width) as f32);
