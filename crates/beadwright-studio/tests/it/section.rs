@@ -104,7 +104,7 @@ fn the_section_shows_the_inside_of_beads_where_they_are() {
         let style = Style { mesh: false, section: Some(section), ..Style::default() };
         let (width, _, pixels) = view.picture(&state, &scene, &style, PIXELS).unwrap();
         let (mut inside, mut outside, mut mixed, mut alike) = (0, 0, 0, 0);
-        for at in places(&scene, &section, 1500) {
+        for at in places(&scene, &section, 6000) {
             let seen = view.camera.project(at, SIZE).unwrap();
             let first = 4 * (seen.y as usize * width as usize + seen.x as usize);
             let found: Vec<f64> = pixels[first..first + 3].iter().map(|c| f64::from(*c)).collect();
@@ -113,8 +113,7 @@ fn the_section_shows_the_inside_of_beads_where_they_are() {
             let error = found.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             if off < 0.75 {
                 inside += 1;
-                // Where beads overlap, and are as deep in each other, either may be seen; where two pieces meet, the round end of
-                // one is seen in place of a cut through the other.
+                // Where beads overlap, and are as deep in each other, either may be seen.
                 mixed += usize::from(error > 4.0);
             } else if off > 1.05 {
                 outside += 1;
